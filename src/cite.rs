@@ -1,0 +1,47 @@
+//! The bibliography: one constant a source, so that a wrong key in a doc link fails `cargo doc`.
+
+/// A source: short key, authors and title, year, and where to find it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cite {
+    /// Short key, as quoted in `describe` and in file metadata.
+    pub key: &'static str,
+    /// Authors and title.
+    pub title: &'static str,
+    /// Year of publication.
+    pub year: u16,
+    /// DOI or link.
+    pub link: &'static str,
+}
+
+macro_rules! cites {
+    ($($(#[$doc:meta])* $name:ident = $key:literal, $title:literal, $year:literal, $link:literal;)*) => {
+        $($(#[$doc])* pub const $name: Cite = Cite { key: $key, title: $title, year: $year, link: $link };)*
+        /// Every source, in alphabetical order of its constant.
+        pub const ALL: &[Cite] = &[$($name),*];
+    };
+}
+
+cites! {
+    /// Cook and Torrance, the first microfacet model of graphics.
+    COOK_TORRANCE_1982 = "CookTorrance1982", "Cook, Torrance: A Reflectance Model for Computer Graphics, ACM TOG 1(1)", 1982, "https://doi.org/10.1145/357290.357293";
+    /// d'Eon and Luebke, the skin chapter of GPU Gems 3.
+    DEON_LUEBKE_2007 = "DEonLuebke2007", "d'Eon, Luebke: Advanced Techniques for Realistic Real-Time Skin Rendering, GPU Gems 3 ch. 14", 2007, "https://developer.nvidia.com/gpugems/gpugems3/part-iii-rendering/chapter-14-advanced-techniques-realistic-real-time-skin";
+    /// Heitz, the review of masking-shadowing functions.
+    HEITZ_2014 = "Heitz2014", "Heitz: Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs, JCGT 3(2)", 2014, "https://jcgt.org/published/0003/02/03/";
+    /// Heitz, sampling of GGX visible normals.
+    HEITZ_2018 = "Heitz2018", "Heitz: Sampling the GGX Distribution of Visible Normals, JCGT 7(4)", 2018, "https://jcgt.org/published/0007/04/01/";
+    /// Karis, split-sum environment lighting.
+    KARIS_2013 = "Karis2013", "Karis: Real Shading in Unreal Engine 4, SIGGRAPH course", 2013, "https://blog.selfshadow.com/publications/s2013-shading-course/";
+    /// Kelemen and Szirmay-Kalos, the coupled matte and specular model.
+    KELEMEN_2001 = "Kelemen2001", "Kelemen, Szirmay-Kalos: A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling, Eurographics short papers", 2001, "https://doi.org/10.2312/egs.20011031";
+    /// Kulla and Conty, energy compensation in production.
+    KULLA_CONTY_2017 = "KullaConty2017", "Kulla, Conty: Revisiting Physically Based Shading at Imageworks, SIGGRAPH course", 2017, "https://blog.selfshadow.com/publications/s2017-shading-course/";
+    /// Lambert's Photometria.
+    LAMBERT_1760 = "Lambert1760", "Lambert: Photometria", 1760, "https://archive.org/details/lambertsphotome00lambgoog";
+    /// Born and Wolf, the textbook of optics.
+    BORN_WOLF_1999 = "BornWolf1999", "Born, Wolf: Principles of Optics, 7th edition", 1999, "https://doi.org/10.1017/CBO9781139644181";
+    /// Schlick, the approximation of the Fresnel factor.
+    SCHLICK_1994 = "Schlick1994", "Schlick: An Inexpensive BRDF Model for Physically-based Rendering, CGF 13(3)", 1994, "https://doi.org/10.1111/1467-8659.1330233";
+    /// Walter and others, rough dielectrics and GGX.
+    WALTER_2007 = "Walter2007", "Walter, Marschner, Li, Torrance: Microfacet Models for Refraction through Rough Surfaces, EGSR", 2007, "https://doi.org/10.2312/EGWR/EGSR07/195-206";
+}

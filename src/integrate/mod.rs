@@ -1,0 +1,2 @@
+//! Quadrature rules and charts. Every rule returns an `Estimate`: a value with its error.
+//! This room knows directions and measures, but no BRDF.

@@ -1,0 +1,2 @@
+//! The `brdfbake` command.
+fn main() {}

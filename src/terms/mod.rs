@@ -1,0 +1,1 @@
+//! The factors of the papers (D, Lambda, G1, G2, Fresnel) in closed, cancellation-free form.
