@@ -21,6 +21,7 @@
 //! | 9 | `cli` | one file a verb (feature `cli`) |
 
 pub mod cite;
+pub mod grid;
 pub mod integrate;
 pub mod math;
 pub mod terms;

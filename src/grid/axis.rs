@@ -1,0 +1,237 @@
+//! One axis of a table: a value of the recipe, shared by baker, reader, metadata and reports.
+//!
+//! From texel to value: index `i` -> axis coordinate `x` in [0, 1] -> warped `w` -> value.
+//!
+//! * centre: `x = (i + offset + 1/2) / len`; endpoint: `x = (i + offset) / (len - 1)`; clamped to [0, 1].
+//! * descending: `x -> 1 - x`, so that index 0 holds the high end of the domain.
+//! * `value = lo + (hi - lo) inverse_warp(x)`, then clamped to `clamp` if one is given.
+
+use super::quantity::{Quantity, by_id};
+use super::warp::Warp;
+use serde::{Deserialize, Serialize};
+
+/// Where in its cell a texel samples the axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Texel {
+    /// Texel `i` sits at `(i + 1/2) / len`: the texture coordinate is the warped value itself.
+    Center,
+    /// Texel 0 and `len - 1` sit on the ends: the shader remaps by `(x (len - 1) + 1/2) / len`.
+    Endpoint,
+}
+
+/// Which end of the domain texel 0 holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Direction {
+    /// Texel 0 holds the low end.
+    Ascending,
+    /// Texel 0 holds the high end.
+    Descending,
+}
+
+/// One axis of a table. See the module for the maps.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Axis {
+    /// What it measures.
+    #[serde(rename = "id", with = "by_id")]
+    pub quantity: &'static Quantity,
+    /// First and last value.
+    pub domain: [f64; 2],
+    /// Spread of the values.
+    pub warp: Warp,
+    /// Texel convention.
+    pub texel: Texel,
+    /// Which end comes first.
+    pub direction: Direction,
+    /// Shift in texels (0 for everyone but readers with an off-by-one to reproduce).
+    pub offset: f64,
+    /// Values are clamped to this interval before they are used, as some generators do at singular ends.
+    pub clamp: Option<[f64; 2]>,
+    /// Number of texels.
+    pub len: usize,
+}
+
+/// What can be wrong with an axis.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AxisError {
+    /// The domain is empty, not finite, or outside that of the quantity.
+    #[error("axis {id}: domain [{lo}, {hi}] must be increasing and inside [{min}, {max}]")]
+    Domain {
+        /// Axis id.
+        id: &'static str,
+        /// Given low end.
+        lo: f64,
+        /// Given high end.
+        hi: f64,
+        /// Allowed low end.
+        min: f64,
+        /// Allowed high end.
+        max: f64,
+    },
+    /// Too few or too many texels.
+    #[error("axis {id}: length {len} outside [{min}, 16384]")]
+    Length {
+        /// Axis id.
+        id: &'static str,
+        /// Given length.
+        len: usize,
+        /// Least length for this texel convention.
+        min: usize,
+    },
+    /// A bad number in a warp.
+    #[error("axis {id}: warp {fault}")]
+    Warp {
+        /// Axis id.
+        id: &'static str,
+        /// What is wrong.
+        fault: String,
+    },
+    /// The clamp interval is not inside the domain.
+    #[error("axis {id}: clamp [{lo}, {hi}] must be increasing and inside the domain")]
+    Clamp {
+        /// Axis id.
+        id: &'static str,
+        /// Given low end.
+        lo: f64,
+        /// Given high end.
+        hi: f64,
+    },
+    /// The offset is not a small finite number.
+    #[error("axis {id}: offset {offset} texels outside [-2, 2]")]
+    Offset {
+        /// Axis id.
+        id: &'static str,
+        /// Given offset.
+        offset: f64,
+    },
+}
+
+impl Axis {
+    /// A linear ascending axis over the whole domain of the quantity.
+    #[must_use]
+    pub fn new(quantity: &'static Quantity, len: usize, texel: Texel) -> Axis {
+        Axis {
+            quantity,
+            domain: quantity.domain,
+            warp: Warp::Linear,
+            texel,
+            direction: Direction::Ascending,
+            offset: 0.0,
+            clamp: None,
+            len,
+        }
+    }
+
+    /// The same axis with another warp.
+    #[must_use]
+    pub fn warped(mut self, warp: Warp) -> Axis {
+        self.warp = warp;
+        self
+    }
+
+    /// The same axis over another domain.
+    #[must_use]
+    pub fn over(mut self, domain: [f64; 2]) -> Axis {
+        self.domain = domain;
+        self
+    }
+
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`AxisError`] names the first field that is out of its range.
+    pub fn check(&self) -> Result<(), AxisError> {
+        let id = self.quantity.id;
+        let [lo, hi] = self.domain;
+        let [min, max] = self.quantity.domain;
+        if !(lo.is_finite() && hi.is_finite() && lo < hi && lo >= min && hi <= max) {
+            return Err(AxisError::Domain { id, lo, hi, min, max });
+        }
+        let least = if self.texel == Texel::Endpoint { 2 } else { 1 };
+        if self.len < least || self.len > 16384 {
+            return Err(AxisError::Length { id, len: self.len, min: least });
+        }
+        if let Some(fault) = self.warp.fault() {
+            return Err(AxisError::Warp { id, fault });
+        }
+        if let Some([a, b]) = self.clamp
+            && !(a <= b && a >= lo && b <= hi)
+        {
+            return Err(AxisError::Clamp { id, lo: a, hi: b });
+        }
+        if self.offset.is_nan() || self.offset.abs() > 2.0 {
+            return Err(AxisError::Offset { id, offset: self.offset });
+        }
+        Ok(())
+    }
+
+    /// Axis coordinate in [0, 1] of a (fractional) index.
+    #[must_use]
+    pub fn coordinate(&self, index: f64) -> f64 {
+        let x = match self.texel {
+            Texel::Center => (index + self.offset + 0.5) / count(self.len),
+            Texel::Endpoint => (index + self.offset) / count(self.len - 1),
+        };
+        x.clamp(0.0, 1.0)
+    }
+
+    /// Value at an axis coordinate; `coupled` as in [`Warp::forward`].
+    #[must_use]
+    pub fn value_at(&self, x: f64, coupled: f64) -> f64 {
+        let x = if self.direction == Direction::Descending { 1.0 - x } else { x };
+        let [lo, hi] = self.domain;
+        let v = lo + (hi - lo) * self.warp.inverse(x, coupled);
+        let [lo, hi] = self.clamp.unwrap_or(self.domain);
+        v.clamp(lo, hi)
+    }
+
+    /// Value at a texel.
+    #[must_use]
+    pub fn value(&self, index: usize, coupled: f64) -> f64 {
+        self.value_at(self.coordinate(count(index)), coupled)
+    }
+
+    /// The texture coordinate that a shader computes, as a formula.
+    #[must_use]
+    pub fn coordinate_formula(&self) -> String {
+        let symbol = self.quantity.id;
+        let [lo, hi] = self.domain;
+        let v = match (lo.abs() == 0.0, (hi - lo - 1.0).abs() == 0.0) {
+            (true, true) => symbol.to_owned(),
+            (true, false) => format!("{symbol} / {hi}"),
+            _ => format!("({symbol} - {lo}) / {}", hi - lo),
+        };
+        let simple = v == symbol || matches!(self.warp, Warp::Linear);
+        let x = if simple { self.warp.formula(&v) } else { self.warp.formula(&format!("({v})")) };
+        let x = if self.direction == Direction::Descending { format!("1 - ({x})") } else { x };
+        let shift = if self.offset.abs() == 0.0 {
+            String::new()
+        } else {
+            format!(" - {} / {}", self.offset, self.len)
+        };
+        match self.texel {
+            Texel::Center => format!("{x}{shift}"),
+            Texel::Endpoint => format!("(({x}) * {} + 0.5) / {}{shift}", self.len - 1, self.len),
+        }
+    }
+
+    /// Fractional index at which a reader finds `value`: the inverse of [`Axis::value`], not clamped to the texels.
+    #[must_use]
+    pub fn index(&self, value: f64, coupled: f64) -> f64 {
+        let [lo, hi] = self.domain;
+        let x = self.warp.forward(((value - lo) / (hi - lo)).clamp(0.0, 1.0), coupled);
+        let x = if self.direction == Direction::Descending { 1.0 - x } else { x };
+        match self.texel {
+            Texel::Center => x * count(self.len) - 0.5 - self.offset,
+            Texel::Endpoint => x * count(self.len - 1) - self.offset,
+        }
+    }
+}
+
+/// A count as f64; tables are far below 2^53 texels.
+#[must_use]
+pub fn count(n: usize) -> f64 {
+    n as f64
+}

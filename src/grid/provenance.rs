@@ -1,0 +1,174 @@
+//! What a file says of itself: one JSON text in every output, equal in all containers.
+//!
+//! It holds no clock, host, path or thread count: the same recipe gives the same bytes.
+
+use super::axis::Axis;
+use super::table::{Channel, Extreme};
+use serde::{Deserialize, Serialize};
+
+/// Version of the metadata layout; raised when a field changes its meaning.
+pub const SCHEMA: u32 = 1;
+
+/// Name of the attribute, key or chunk that holds the provenance in a file.
+pub const ATTRIBUTE: &str = "brdfbake";
+
+/// Everything needed to use, check and re-make a table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Version of this layout, [`SCHEMA`].
+    pub schema: u32,
+    /// Program and version.
+    pub tool: String,
+    /// Name of the recipe and blake3 of its canonical form.
+    pub recipe: RecipeId,
+    /// Name of the table in its recipe; also the file stem.
+    pub name: String,
+    /// Which kind of table, its formula and sources.
+    pub table: Subject,
+    /// Which model, if the table has one.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub model: Option<Subject>,
+    /// Axes, fastest first (x, y, z of the texture).
+    pub axes: Vec<AxisRecord>,
+    /// Channels in file order.
+    pub channels: Vec<Channel>,
+    /// Integration: rule, tolerance asked for, largest estimate, evaluations.
+    pub integration: Integration,
+    /// How the values are stored and what the rounding costs.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub encoding: Option<Encoding>,
+    /// How far a bilinear reader is from fresh integrals.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub reconstruction: Option<Reconstruction>,
+    /// Laws that were checked, with their margins.
+    pub laws: Vec<LawRecord>,
+    /// True if every law held; false if one was waived.
+    pub verified: bool,
+    /// Laws let through by the recipe, with the reason given there.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub waived: Vec<Waiver>,
+}
+
+/// The recipe that a file came from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RecipeId {
+    /// Name of the recipe.
+    pub name: String,
+    /// blake3 of the canonical JSON of this table's resolved recipe and the program version.
+    pub hash: String,
+}
+
+/// A table kind or a model: id, parameters, formula, sources.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Subject {
+    /// Registry id.
+    pub id: String,
+    /// Title.
+    pub title: String,
+    /// The formula, as in `describe`.
+    pub formula: String,
+    /// Fixed parameters (those that no axis sweeps).
+    pub params: serde_json::Map<String, serde_json::Value>,
+    /// Sources with equation numbers.
+    pub sources: Vec<String>,
+}
+
+/// An axis with its maps spelled out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AxisRecord {
+    /// The axis itself.
+    #[serde(flatten)]
+    pub axis: Axis,
+    /// Symbol.
+    pub symbol: String,
+    /// Unit.
+    pub unit: String,
+    /// How a derived quantity becomes its base, such as `alpha = roughness^2`.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub base: Option<String>,
+    /// The texture coordinate that a shader computes from a value.
+    pub coordinate: String,
+}
+
+impl AxisRecord {
+    /// Spells out the maps of an axis.
+    #[must_use]
+    pub fn new(axis: &Axis) -> AxisRecord {
+        AxisRecord {
+            symbol: axis.quantity.symbol.to_owned(),
+            unit: axis.quantity.unit.to_owned(),
+            base: axis.quantity.base.as_ref().map(|b| b.formula.to_owned()),
+            coordinate: axis.coordinate_formula(),
+            axis: axis.clone(),
+        }
+    }
+}
+
+/// How the texels were integrated.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Integration {
+    /// The rule, in words.
+    pub rule: String,
+    /// Tolerance asked for (absolute, per channel).
+    pub tolerance: f64,
+    /// Largest estimated error and where it lies.
+    pub largest_error: Extreme,
+    /// Integrand evaluations in all.
+    pub evaluations: u64,
+    /// Texels whose estimate is above the tolerance (0 unless the recipe allows it).
+    pub missed: u64,
+}
+
+/// How values were rounded.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Encoding {
+    /// Storage id: `half`, `float`, `unorm16`.
+    pub storage: String,
+    /// Largest difference between integral and stored value.
+    pub largest_error: f64,
+}
+
+/// Errors of the reader's reconstruction, against fresh integrals between the texels.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Reconstruction {
+    /// The filter that was assumed.
+    pub filter: String,
+    /// Points at which it was compared.
+    pub points: u64,
+    /// Over the whole domain.
+    pub whole: Spread,
+    /// Over `mu >= 0.05` and `roughness >= 0.09`, if the table has such axes.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub practical: Option<Spread>,
+}
+
+/// Largest and mean error of a set of points.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// The largest, with its channel and place.
+    pub largest: Extreme,
+    /// Mean over points and channels.
+    pub mean: f64,
+}
+
+/// The outcome of one law.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LawRecord {
+    /// Law id.
+    pub law: String,
+    /// Did it hold?
+    pub held: bool,
+    /// Distance to the bound, positive when it holds; see the law for its meaning.
+    pub margin: f64,
+    /// Where the margin is smallest.
+    pub at: String,
+}
+
+/// A broken law that the recipe lets through.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Waiver {
+    /// Law id.
+    pub law: String,
+    /// Reason given in the recipe.
+    pub reason: String,
+}

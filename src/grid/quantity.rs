@@ -1,0 +1,155 @@
+//! What an axis can measure. A derived quantity (`roughness`) is read into its base quantity (`alpha`) by a named map.
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// A quantity that an axis can sweep: id, symbol, unit, and its relation to the base quantity that formulas use.
+#[derive(Debug)]
+pub struct Quantity {
+    /// Id, as in recipes and metadata: `mu`, `roughness`.
+    pub id: &'static str,
+    /// Symbol in formulas.
+    pub symbol: &'static str,
+    /// Unit; `1` for pure numbers.
+    pub unit: &'static str,
+    /// One line of meaning.
+    pub meaning: &'static str,
+    /// Largest domain on which the quantity makes sense.
+    pub domain: [f64; 2],
+    /// For a derived quantity: base id, formula, map to the base, and map from the base.
+    pub base: Option<Base>,
+}
+
+/// How a derived quantity becomes its base quantity.
+#[derive(Debug)]
+pub struct Base {
+    /// Id of the base quantity.
+    pub id: &'static str,
+    /// The map in words: `alpha = roughness^2`.
+    pub formula: &'static str,
+    /// From this quantity to the base.
+    pub to: fn(f64) -> f64,
+    /// From the base to this quantity.
+    pub from: fn(f64) -> f64,
+}
+
+const UNBOUNDED: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
+/// Every quantity, base quantities before those derived from them.
+pub static QUANTITIES: &[Quantity] = &[
+    base("mu", "mu_o", "1", "cosine of the view angle to the normal", [0.0, 1.0]),
+    base("mu_m", "mu_m", "1", "cosine of the microfacet normal (N.H)", [0.0, 1.0]),
+    base("mu_i", "mu_i", "1", "cosine of the incident angle", [0.0, 1.0]),
+    base(
+        "phi",
+        "phi_o",
+        "rad",
+        "azimuth of the view direction from the tangent",
+        [0.0, std::f64::consts::TAU],
+    ),
+    base("alpha", "alpha", "1", "width of the microfacet distribution", [0.0, 2.0]),
+    base("alpha_x", "alpha_x", "1", "width along the tangent", [0.0, 2.0]),
+    base("alpha_y", "alpha_y", "1", "width along the bitangent", [0.0, 2.0]),
+    base("m", "m", "1", "Beckmann width as Cook-Torrance and Kelemen name it; equals alpha", [0.0, 2.0]),
+    base("eta", "eta", "1", "relative index of refraction, below over above", [1e-3, 1e3]),
+    base("k", "k", "1", "extinction coefficient of a conductor", [0.0, 1e3]),
+    base("f0", "F0", "1", "reflectance at normal incidence", [0.0, 1.0]),
+    base("rho", "rho", "1", "diffuse reflectance", [0.0, 1.0]),
+    derived(
+        "roughness",
+        "r",
+        "artist's roughness",
+        [0.0, 1.0],
+        Base { id: "alpha", formula: "alpha = roughness^2", to: |r| r * r, from: f64::sqrt },
+    ),
+    derived(
+        "theta",
+        "theta_o",
+        "view angle to the normal, in radians",
+        [0.0, std::f64::consts::FRAC_PI_2],
+        Base { id: "mu", formula: "mu = cos(theta)", to: |t| libm::cos(t).max(0.0), from: libm::acos },
+    ),
+    derived(
+        "f0_root4",
+        "z",
+        "fourth root of the dielectric F0",
+        [0.0, 0.99],
+        Base {
+            id: "eta",
+            formula: "eta = (1 + z^2) / (1 - z^2)",
+            to: |z| (1.0 + z * z) / (1.0 - z * z),
+            from: |eta| ((eta - 1.0) / (eta + 1.0)).max(0.0).sqrt(),
+        },
+    ),
+];
+
+const fn base(
+    id: &'static str,
+    symbol: &'static str,
+    unit: &'static str,
+    meaning: &'static str,
+    domain: [f64; 2],
+) -> Quantity {
+    Quantity { id, symbol, unit, meaning, domain, base: None }
+}
+
+const fn derived(
+    id: &'static str,
+    symbol: &'static str,
+    meaning: &'static str,
+    domain: [f64; 2],
+    base: Base,
+) -> Quantity {
+    Quantity { id, symbol, unit: "1", meaning, domain, base: Some(base) }
+}
+
+impl Quantity {
+    /// Looks a quantity up by its id.
+    #[must_use]
+    pub fn find(id: &str) -> Option<&'static Quantity> {
+        QUANTITIES.iter().find(|q| q.id == id)
+    }
+
+    /// The id that formulas use: the base's, or its own.
+    #[must_use]
+    pub fn base_id(&self) -> &'static str {
+        self.base.as_ref().map_or(self.id, |b| b.id)
+    }
+
+    /// Value of the base quantity.
+    #[must_use]
+    pub fn to_base(&self, value: f64) -> f64 {
+        self.base.as_ref().map_or(value, |b| (b.to)(value))
+    }
+
+    /// Value of this quantity for a value of its base.
+    #[must_use]
+    pub fn from_base(&self, value: f64) -> f64 {
+        self.base.as_ref().map_or(value, |b| (b.from)(value))
+    }
+
+    /// True where the quantity has no natural bounds of its own.
+    #[must_use]
+    pub fn is_unbounded(&self) -> bool {
+        self.domain == UNBOUNDED
+    }
+}
+
+impl PartialEq for Quantity {
+    fn eq(&self, other: &Self) -> bool {
+        self.id == other.id
+    }
+}
+
+/// Serde by id, for fields of type `&'static Quantity`.
+pub(crate) mod by_id {
+    use super::{Deserialize, Deserializer, Quantity, Serialize, Serializer};
+
+    pub(crate) fn serialize<S: Serializer>(q: &&'static Quantity, s: S) -> Result<S::Ok, S::Error> {
+        q.id.serialize(s)
+    }
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(d: D) -> Result<&'static Quantity, D::Error> {
+        let id = String::deserialize(d)?;
+        Quantity::find(&id).ok_or_else(|| serde::de::Error::custom(format!("unknown quantity `{id}`")))
+    }
+}

@@ -1,0 +1,48 @@
+//! Graded one-dimensional rules: Gauss-Legendre under `t = eps sinh(L x)`, `L = asinh(1 / eps)`, on (0, 1).
+//!
+//! A function whose nearest singularities lie at `t = +- i eps` is analytic in x up to a distance pi / (2 L), so the
+//! order that a given accuracy needs grows with L, that is with the logarithm of 1 / eps, and no faster.
+
+use super::gauss;
+use super::nodes::BATCH;
+
+/// Order of a panel at `level`: `level (c0 + c1 L)`, between 2 and [`BATCH`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Order(pub f64, pub f64);
+
+impl Order {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [2, BATCH] first")]
+    fn at(self, level: f64, l: f64) -> usize {
+        (level * (self.0 + self.1 * l)).ceil().clamp(2.0, 128.0) as usize
+    }
+}
+
+/// Nodes in (0, 1) graded towards 0 on the scale `eps`, and their weights.
+#[derive(Debug, Clone)]
+pub struct Graded {
+    /// Number of nodes.
+    pub len: usize,
+    /// Nodes, increasing.
+    pub node: [f64; BATCH],
+    /// Weights; they sum to 1.
+    pub weight: [f64; BATCH],
+}
+
+impl Graded {
+    /// The rule of a panel of length 1 for the scale `eps > 0`.
+    #[must_use]
+    pub fn new(eps: f64, order: Order, level: f64) -> Graded {
+        let ratio = 1.0 / eps.max(1e-300);
+        let l = libm::asinh(ratio);
+        let rule = gauss::rule(order.at(level, l));
+        let mut out = Graded { len: rule.nodes.len(), node: [0.0; BATCH], weight: [0.0; BATCH] };
+        for (i, (&x, &w)) in rule.nodes.iter().zip(&rule.weights).enumerate() {
+            // sinh and cosh from one expm1, without cancellation at small arguments.
+            let m = libm::expm1(l * x);
+            let inverse = 1.0 / (1.0 + m);
+            out.node[i] = 0.5 * m * (1.0 + inverse) / ratio;
+            out.weight[i] = 0.5 * (1.0 + m + inverse) * l * w / ratio;
+        }
+        out
+    }
+}

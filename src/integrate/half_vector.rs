@@ -1,0 +1,107 @@
+//! The half-vector chart: wm in polar coordinates round the normal, with the horizon as a coordinate line.
+//!
+//! With `wo = (s, 0, mu)`, `wm = (sin t cos p, sin t sin p, cos t)`, `v = wo . wm` and `wi = 2 v wm - wo`:
+//!
+//! ```text
+//! dwi  = 4 v sin(t) dt dp
+//! mu_i = R cos(2 t - delta) = R sin(2 (t_max - t)),  R = hypot(s cos p, mu),  delta = atan2(s cos p, mu),
+//! t_max(p) = pi/4 + delta/2
+//! ```
+//!
+//! so the horizon is exactly `t = t_max`, and `mu_i` near it has no cancellation when `d = t_max - t` is the variable.
+//! Everything is algebraic in half-angle tangents: no transcendental function is called per node.
+//!
+//! Panels, each graded by [`Graded`]:
+//! * azimuth: (0, pi/2) and (pi/2, pi), graded towards pi/2 on the scale `mu / s`, where R changes;
+//! * below `t_max / 2`: graded towards t = 0 on the scale `alpha` of the peak of D and its tail;
+//! * above it: graded towards the horizon on the scale `min(mu, 3 alpha) / (2 R)`, where Smith masking changes.
+//!
+//! Measured on GGX (scale and bias, 600 points with mu and alpha down to 1e-4): the largest error falls by a factor of
+//! about ten for each unit of the level, down to 4e-14, at about 9 `level`^2 evaluations (25 `level`^2 when both mu and
+//! alpha are tiny).
+
+use super::graded::{Graded, Order};
+use super::nodes::{BATCH, Nodes};
+use std::f64::consts::FRAC_PI_2;
+
+const AZIMUTH_FRONT: Order = Order(1.0, 0.25);
+const AZIMUTH_BACK: Order = Order(1.0, 0.15);
+const PEAK: Order = Order(0.7, 0.4);
+const HORIZON: Order = Order(0.7, 0.3);
+
+/// Widest and narrowest scale that the gradings are built for.
+const ALPHA_RANGE: [f64; 2] = [1e-8, 4.0];
+
+/// Geometry of one azimuth: cosine, R, and tangents of t_max / 2 and t_max / 4.
+struct Row {
+    cos_phi: f64,
+    r: f64,
+    half: f64,
+    quarter: f64,
+}
+
+impl Row {
+    fn new(cos_phi: f64, sin_o: f64, mu: f64) -> Row {
+        let a = sin_o * cos_phi;
+        let r = (a * a + mu * mu).sqrt();
+        // sin and cos of t_max from cos(2 t_max) = -a / r; the small one of 1 +- a/r as mu^2 / (r (r + |a|)).
+        let near = mu / (2.0 * r * (r + a.abs())).sqrt();
+        let far = ((r + a.abs()) / (2.0 * r)).sqrt();
+        let (sin, cos) = if a >= 0.0 { (far, near) } else { (near, far) };
+        let half = sin / (1.0 + cos);
+        Row { cos_phi, r, half, quarter: half / (1.0 + (1.0 + half * half).sqrt()) }
+    }
+}
+
+/// Calls `visit` with batches of nodes that cover the hemisphere for one view cosine.
+pub fn visit(mu_o: f64, alpha: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
+    let alpha = alpha.clamp(ALPHA_RANGE[0], ALPHA_RANGE[1]);
+    let mut nodes = Nodes::new(mu_o);
+    let (s, mu) = (nodes.sin_o, mu_o);
+    let azimuth_scale = (mu / (s.max(1e-9) * FRAC_PI_2)).clamp(1e-9, 1e3);
+    for (front, order) in [(true, AZIMUTH_FRONT), (false, AZIMUTH_BACK)] {
+        let azimuth = Graded::new(azimuth_scale, order, level);
+        // Gradings are shared by the rows of a side; the row at phi = 0 (or pi/2) is the most demanding one.
+        let hardest = Row::new(if front { 1.0 } else { 0.0 }, s, mu.max(1e-12));
+        let peak = Graded::new(0.5 * alpha / hardest.quarter, PEAK, level);
+        let near = (mu.min(3.0 * alpha) / (2.0 * hardest.r)).clamp(1e-9, 1.0);
+        let horizon = Graded::new(0.5 * near / hardest.quarter, HORIZON, level);
+        for j in 0..azimuth.len {
+            let sine = libm::sin(FRAC_PI_2 * azimuth.node[j]);
+            let row = Row::new(if front { sine } else { -sine }, s, mu);
+            // 2 for the mirror half of the azimuth.
+            let width = 2.0 * FRAC_PI_2 * azimuth.weight[j];
+            fill(&mut nodes, &row, &peak, width, false);
+            visit(&nodes);
+            fill(&mut nodes, &row, &horizon, width, true);
+            visit(&nodes);
+        }
+    }
+}
+
+/// Nodes of one row and panel. `y` runs over the tangent of the half angle measured from the graded end.
+fn fill(nodes: &mut Nodes, row: &Row, graded: &Graded, width: f64, from_horizon: bool) {
+    let (half, quarter, mu) = (row.half, row.quarter, nodes.mu_o);
+    let len = graded.len.min(BATCH);
+    nodes.len = len;
+    nodes.cos_phi[..len].fill(row.cos_phi);
+    for i in 0..len {
+        let y = quarter * graded.node[i];
+        let other = (half - y) / (1.0 + half * y);
+        // t = tan(theta / 2), u = tan((theta_max - theta) / 2)
+        let (t, u) = if from_horizon { (other, y) } else { (y, other) };
+        let d_theta = 2.0 * quarter * graded.weight[i] / (1.0 + y * y);
+        let sec_t = 1.0 / (1.0 + t * t);
+        let sec_u = 1.0 / (1.0 + u * u);
+        let cos = (1.0 - t) * (1.0 + t) * sec_t;
+        let sin = 2.0 * t * sec_t;
+        let mu_i = row.r * 4.0 * u * (1.0 - u) * (1.0 + u) * sec_u * sec_u;
+        // from mu_i = 2 v cos - mu, free of cancellation where v is small
+        let v = (mu_i + mu) / (2.0 * cos);
+        nodes.cos_h[i] = cos;
+        nodes.sin_h[i] = sin;
+        nodes.mu_i[i] = mu_i;
+        nodes.cos_d[i] = v;
+        nodes.weight[i] = 4.0 * v * sin * d_theta * width;
+    }
+}
