@@ -28,6 +28,8 @@ cites! {
     DEON_LUEBKE_2007 = "DEonLuebke2007", "d'Eon, Luebke: Advanced Techniques for Realistic Real-Time Skin Rendering, GPU Gems 3 ch. 14", 2007, "https://developer.nvidia.com/gpugems/gpugems3/part-iii-rendering/chapter-14-advanced-techniques-realistic-real-time-skin";
     /// The NIST library of special functions.
     DLMF = "DLMF", "Olver and others (eds.): NIST Digital Library of Mathematical Functions", 2010, "https://dlmf.nist.gov/";
+    /// Duntley, average reflectance of interfaces in diffuse light.
+    DUNTLEY_1942 = "Duntley1942", "Duntley: The Optical Properties of Diffusing Materials, JOSA 32(2)", 1942, "https://doi.org/10.1364/JOSA.32.000061";
     /// Heitz, the review of masking-shadowing functions.
     HEITZ_2014 = "Heitz2014", "Heitz: Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs, JCGT 3(2)", 2014, "https://jcgt.org/published/0003/02/03/";
     /// Heitz, sampling of GGX visible normals.
