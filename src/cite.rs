@@ -26,6 +26,10 @@ cites! {
     COOK_TORRANCE_1982 = "CookTorrance1982", "Cook, Torrance: A Reflectance Model for Computer Graphics, ACM TOG 1(1)", 1982, "https://doi.org/10.1145/357290.357293";
     /// d'Eon and Luebke, the skin chapter of GPU Gems 3.
     DEON_LUEBKE_2007 = "DEonLuebke2007", "d'Eon, Luebke: Advanced Techniques for Realistic Real-Time Skin Rendering, GPU Gems 3 ch. 14", 2007, "https://developer.nvidia.com/gpugems/gpugems3/part-iii-rendering/chapter-14-advanced-techniques-realistic-real-time-skin";
+    /// The NIST library of special functions.
+    DLMF = "DLMF", "Olver and others (eds.): NIST Digital Library of Mathematical Functions", 2010, "https://dlmf.nist.gov/";
+    /// Duntley, average reflectance of interfaces in diffuse light.
+    DUNTLEY_1942 = "Duntley1942", "Duntley: The Optical Properties of Diffusing Materials, JOSA 32(2)", 1942, "https://doi.org/10.1364/JOSA.32.000061";
     /// Heitz, the review of masking-shadowing functions.
     HEITZ_2014 = "Heitz2014", "Heitz: Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs, JCGT 3(2)", 2014, "https://jcgt.org/published/0003/02/03/";
     /// Heitz, sampling of GGX visible normals.
@@ -40,6 +44,8 @@ cites! {
     LAMBERT_1760 = "Lambert1760", "Lambert: Photometria", 1760, "https://archive.org/details/lambertsphotome00lambgoog";
     /// Born and Wolf, the textbook of optics.
     BORN_WOLF_1999 = "BornWolf1999", "Born, Wolf: Principles of Optics, 7th edition", 1999, "https://doi.org/10.1017/CBO9781139644181";
+    /// Neumaier, summation with a rounding error that does not grow with the number of terms.
+    NEUMAIER_1974 = "Neumaier1974", "Neumaier: Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen, ZAMM 54", 1974, "https://doi.org/10.1002/zamm.19740540106";
     /// Schlick, the approximation of the Fresnel factor.
     SCHLICK_1994 = "Schlick1994", "Schlick: An Inexpensive BRDF Model for Physically-based Rendering, CGF 13(3)", 1994, "https://doi.org/10.1111/1467-8659.1330233";
     /// Walter and others, rough dielectrics and GGX.

@@ -1,1 +1,5 @@
 //! Frames, special functions and sums; f64 throughout, transcendental functions from `libm` only.
+
+pub mod frame;
+pub mod special;
+pub mod sum;

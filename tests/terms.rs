@@ -1,0 +1,9 @@
+//! The closed-form terms against high-precision reference values and identities.
+#![allow(clippy::float_cmp, reason = "exact results are asserted exactly")]
+#![allow(clippy::excessive_precision, reason = "reference values are quoted with all their digits")]
+#![allow(clippy::unwrap_used, reason = "a test may fail by panicking")]
+
+#[path = "terms/fresnel.rs"]
+mod fresnel;
+#[path = "terms/values.rs"]
+mod values;
