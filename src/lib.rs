@@ -24,6 +24,8 @@ pub mod cite;
 pub mod grid;
 pub mod integrate;
 pub mod math;
-pub mod terms;
-
+pub mod models;
 pub mod scene;
+pub mod tables;
+pub mod terms;
+pub mod verify;

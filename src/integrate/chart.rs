@@ -32,7 +32,7 @@ impl Chart {
     #[must_use]
     pub fn gain(&self) -> f64 {
         match self {
-            Chart::HalfVector { .. } => 4.0,
+            Chart::HalfVector { .. } => 1.0,
             Chart::Hemisphere => 1.0,
         }
     }

@@ -6,14 +6,17 @@
 use super::gauss;
 use super::nodes::BATCH;
 
-/// Order of a panel at `level`: `level (c0 + c1 L)`, between 2 and [`BATCH`].
+/// Order of a panel at `level`: `level (c0 + c1 L)` rounded, between 2 and [`BATCH`].
+///
+/// With `c0 >= 1` and levels that grow by 1.4 from 2 on, every order grows from level to level: a panel that did not
+/// grow would hide its error from the ladder.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Order(pub f64, pub f64);
 
 impl Order {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [2, BATCH] first")]
     fn at(self, level: f64, l: f64) -> usize {
-        (level * (self.0 + self.1 * l)).ceil().clamp(2.0, 128.0) as usize
+        (level * (self.0 + self.1 * l)).round().clamp(2.0, 128.0) as usize
     }
 }
 

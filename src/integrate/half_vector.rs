@@ -26,8 +26,8 @@ use std::f64::consts::FRAC_PI_2;
 
 const AZIMUTH_FRONT: Order = Order(1.0, 0.25);
 const AZIMUTH_BACK: Order = Order(1.0, 0.15);
-const PEAK: Order = Order(0.7, 0.4);
-const HORIZON: Order = Order(0.7, 0.3);
+const PEAK: Order = Order(1.0, 0.35);
+const HORIZON: Order = Order(1.0, 0.25);
 
 /// Widest and narrowest scale that the gradings are built for.
 const ALPHA_RANGE: [f64; 2] = [1e-8, 4.0];
@@ -71,8 +71,10 @@ pub fn visit(mu_o: f64, alpha: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
             let row = Row::new(if front { sine } else { -sine }, s, mu);
             // 2 for the mirror half of the azimuth.
             let width = 2.0 * FRAC_PI_2 * azimuth.weight[j];
+            nodes.panel = if front { 0 } else { 2 };
             fill(&mut nodes, &row, &peak, width, false);
             visit(&nodes);
+            nodes.panel += 1;
             fill(&mut nodes, &row, &horizon, width, true);
             visit(&nodes);
         }

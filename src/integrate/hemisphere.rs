@@ -10,7 +10,8 @@ pub fn visit(mu_o: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
     let order = order(level);
     let azimuth = gauss::rule(order);
     let polar = gauss::rule(order);
-    for (lo, hi) in [(0.0, mu_o), (mu_o, 1.0)] {
+    for (panel, lo, hi) in [(0, 0.0, mu_o), (1, mu_o, 1.0)] {
+        nodes.panel = panel;
         if hi - lo <= 0.0 {
             continue;
         }

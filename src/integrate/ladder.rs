@@ -1,12 +1,13 @@
 //! The stopping rule: raise the level of a chart until two successive levels agree.
 //!
-//! With I_j the sum at level j, the error of the finer sum is estimated as `|I_j - I_(j-1)| / gain`, `gain >= 1` a
-//! property of the chart: where the error falls by a factor g from level to level,
-//! `|I_j - I| <= |I_j - I_(j-1)| / (g - 1)`, and `gain` is kept well below the smallest g - 1 measured.
-//! A floor for rounding is added: 2^-50 of the largest sum of magnitudes.
+//! With I_j the sum of a panel at level j, the error of the finer sum is estimated as `|I_j - I_(j-1)| / gain`, `gain`
+//! a property of the chart: where the error falls by a factor g from level to level,
+//! `|I_j - I| <= |I_j - I_(j-1)| / (g - 1)`, and `gain` is kept well below the smallest g - 1 measured. The estimates
+//! of the panels are added in magnitude, so that errors of opposite sign do not hide each other.
+//! A floor for rounding is added: 2^-50 of the sum of magnitudes.
 
 use super::chart::Chart;
-use super::nodes::Nodes;
+use super::nodes::{MAX_PANELS, Nodes};
 
 /// Most channels integrated in one pass.
 pub const MAX_CHANNELS: usize = 8;
@@ -71,30 +72,51 @@ pub fn integrate(
     add: &mut dyn FnMut(&Nodes, &mut Sums),
 ) -> Estimate {
     let mut evaluations = 0u32;
-    let mut sum_at = |level: f64| {
-        let mut sums = [0.0; MAX_CHANNELS];
+    let mut sums_at = |level: f64| {
+        let mut sums = [[0.0; MAX_CHANNELS]; MAX_PANELS];
         chart.visit(mu_o, level, &mut |nodes| {
             evaluations = evaluations.saturating_add(u32::try_from(nodes.len).unwrap_or(u32::MAX));
-            add(nodes, &mut sums);
+            add(nodes, &mut sums[nodes.panel]);
         });
         sums
     };
     let start = first_level(tolerance);
-    let mut coarse = sum_at(LEVELS[start]);
+    let mut coarse = sums_at(LEVELS[start]);
     let mut error = [0.0; MAX_CHANNELS];
     for &level in &LEVELS[start + 1..] {
-        let fine = sum_at(level);
-        let mut done = true;
-        for c in 0..channels {
-            let scale = fine[c].abs().max(coarse[c].abs()).max(f64::MIN_POSITIVE);
-            error[c] = (fine[c] - coarse[c]).abs() / chart.gain() + scale * ROUNDING;
-            // NaN compares false and so never counts as done.
-            done &= error[c] <= tolerance;
-        }
+        let fine = sums_at(level);
+        error = differences(&fine, &coarse, channels, chart.gain());
         coarse = fine;
-        if done {
+        // NaN compares false and so never counts as done.
+        if error[..channels].iter().all(|e| *e <= tolerance) {
             break;
         }
     }
-    Estimate { value: coarse, error, evaluations }
+    Estimate { value: total(&coarse), error, evaluations }
+}
+
+type Panels = [Sums; MAX_PANELS];
+
+fn total(panels: &Panels) -> Sums {
+    let mut sums = [0.0; MAX_CHANNELS];
+    for panel in panels {
+        for (s, p) in sums.iter_mut().zip(panel) {
+            *s += p;
+        }
+    }
+    sums
+}
+
+/// For each channel the sum over panels of the absolute differences, over the gain, plus the rounding floor.
+fn differences(fine: &Panels, coarse: &Panels, channels: usize, gain: f64) -> Sums {
+    let mut error = [0.0; MAX_CHANNELS];
+    for (c, e) in error.iter_mut().enumerate().take(channels) {
+        let (mut difference, mut magnitude) = (0.0, 0.0);
+        for (f, g) in fine.iter().zip(coarse) {
+            difference += (f[c] - g[c]).abs();
+            magnitude += f[c].abs();
+        }
+        *e = difference / gain + magnitude * ROUNDING;
+    }
+    error
 }

@@ -7,10 +7,12 @@ pub mod chart;
 pub mod gauss;
 pub mod graded;
 pub mod half_vector;
+pub mod hammersley;
 pub mod hemisphere;
 pub mod ladder;
 pub mod nodes;
+pub mod sobol;
 
 pub use chart::Chart;
 pub use ladder::{Estimate, MAX_CHANNELS, Sums};
-pub use nodes::{BATCH, Nodes};
+pub use nodes::{BATCH, MAX_PANELS, Nodes};

@@ -5,6 +5,9 @@ use glam::DVec3;
 /// Most nodes in one batch.
 pub const BATCH: usize = 128;
 
+/// Most panels of a chart; errors are estimated panel by panel, so that they cannot cancel unseen.
+pub const MAX_PANELS: usize = 8;
+
 /// A batch of incident directions with their weights.
 ///
 /// All directions are in the frame of the chart: `wo = (sin_o, 0, mu_o)`. By mirror symmetry charts of isotropic
@@ -13,6 +16,8 @@ pub const BATCH: usize = 128;
 pub struct Nodes {
     /// Number of nodes in use.
     pub len: usize,
+    /// Which panel of the chart the batch belongs to, below [`MAX_PANELS`].
+    pub panel: usize,
     /// Cosine of the view direction.
     pub mu_o: f64,
     /// Sine of the view direction.
@@ -39,6 +44,7 @@ impl Nodes {
         let zero = [0.0; BATCH];
         Nodes {
             len: 0,
+            panel: 0,
             mu_o,
             sin_o,
             weight: zero,

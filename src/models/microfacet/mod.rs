@@ -1,0 +1,225 @@
+//! The shared body of every microfacet reflection model: `f = F(v) D(wh) G2(wo, wi) / (4 mu_o mu_i)`, `v = wo.wh`.
+//!
+//! Source: [Walter2007](crate::cite::WALTER_2007) Eq. 20. A model file names a [`Distribution`], a masking and a
+//! [`Fresnel`] factor; everything else is here.
+
+mod beckmann;
+mod fresnel;
+mod ggx;
+mod reduction;
+
+pub use beckmann::Beckmann;
+pub use fresnel::Fresnel;
+pub use ggx::Ggx;
+
+use super::{Brdf, Param, ParamError, Params, Preset, Sample};
+use crate::integrate::{BATCH, Chart, Estimate, Nodes};
+use crate::math::frame;
+use glam::{DVec2, DVec3};
+use std::fmt::Debug;
+
+/// How the masking of the two directions is combined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Masking {
+    /// `G2 = 1 / (1 + Lambda(wo) + Lambda(wi))`, [Heitz2014](crate::cite::HEITZ_2014) Eq. 99.
+    Correlated,
+    /// `G2 = G1(wo) G1(wi)`, [Walter2007](crate::cite::WALTER_2007) Eq. 23.
+    Separable,
+}
+
+/// A distribution of microfacet normals with its Smith masking.
+pub trait Distribution: Debug + Send + Sync {
+    /// D(wm), 1/sr.
+    fn d(&self, wm: DVec3) -> f64;
+
+    /// Smith's Lambda of a direction above the horizon.
+    fn lambda(&self, w: DVec3) -> f64;
+
+    /// `G2 / (4 mu_o mu_i)` for two directions above the horizon.
+    fn visibility(&self, wo: DVec3, wi: DVec3, masking: Masking) -> f64 {
+        let (o, i) = (self.lambda(wo), self.lambda(wi));
+        let g2 = match masking {
+            Masking::Correlated => 1.0 / (1.0 + o + i),
+            Masking::Separable => 1.0 / ((1.0 + o) * (1.0 + i)),
+        };
+        g2 / (4.0 * wo.z * wi.z)
+    }
+
+    /// Draws a microfacet normal seen from `wo`.
+    fn sample(&self, wo: DVec3, u: DVec2) -> DVec3;
+
+    /// Density of [`Distribution::sample`], per solid angle of wm.
+    fn pdf(&self, wo: DVec3, wm: DVec3) -> f64;
+
+    /// The width, if it is the same along both tangents.
+    fn alpha(&self) -> Option<f64>;
+
+    /// `D V` at a batch of nodes of an isotropic distribution.
+    fn dv_nodes(&self, nodes: &Nodes, masking: Masking, out: &mut [f64; BATCH]) {
+        let wo = nodes.wo();
+        for (i, o) in out[..nodes.len].iter_mut().enumerate() {
+            *o = self.d(nodes.wh(i)) * self.visibility(wo, nodes.wi(i), masking);
+        }
+    }
+
+    /// White directional albedo by a one-dimensional reduction, if there is one.
+    fn reduced_albedo(&self, _mu_o: f64, _masking: Masking, _tolerance: f64) -> Option<Estimate> {
+        None
+    }
+}
+
+/// A microfacet reflection.
+#[derive(Debug)]
+pub struct Microfacet<D: Distribution> {
+    /// Normals and masking.
+    pub distribution: D,
+    /// How the masking is combined.
+    pub masking: Masking,
+    /// The Fresnel factor.
+    pub fresnel: Fresnel,
+}
+
+impl<D: Distribution> Brdf for Microfacet<D> {
+    fn eval(&self, wo: DVec3, wi: DVec3) -> f64 {
+        if !frame::both_above(wo, wi) || self.mirror(wo.z).is_some() {
+            return 0.0;
+        }
+        let Some(h) = frame::half_vector(wo, wi) else { return 0.0 };
+        self.fresnel.at(h.cos_d)
+            * self.distribution.d(h.wh)
+            * self.distribution.visibility(wo, wi, self.masking)
+    }
+
+    fn sample(&self, wo: DVec3, u: DVec2) -> Option<Sample> {
+        let wm = self.distribution.sample(wo, u);
+        let wi = frame::reflect(wo, wm);
+        (wi.z > 0.0).then(|| Sample { wi, pdf: self.pdf(wo, wi) })
+    }
+
+    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
+        match frame::half_vector(wo, wi) {
+            Some(h) if frame::both_above(wo, wi) => self.distribution.pdf(wo, h.wh) / (4.0 * h.cos_d),
+            _ => 0.0,
+        }
+    }
+
+    fn chart(&self) -> Option<Chart> {
+        self.distribution.alpha().map(|alpha| Chart::HalfVector { alpha })
+    }
+
+    fn eval_nodes(&self, nodes: &Nodes, out: &mut [f64; BATCH]) {
+        self.distribution.dv_nodes(nodes, self.masking, out);
+        self.fresnel.scale_nodes(nodes, out);
+    }
+
+    fn mirror(&self, mu_o: f64) -> Option<f64> {
+        let flat = self.distribution.alpha().is_some_and(|a| a <= 0.0);
+        flat.then(|| self.fresnel.at(mu_o))
+    }
+
+    fn reduced_albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
+        let constant = self.fresnel.constant()?;
+        let mut e = self.distribution.reduced_albedo(mu_o, self.masking, tolerance)?;
+        e.value[0] *= constant;
+        e.error[0] *= constant;
+        Some(e)
+    }
+}
+
+/// `alpha`: width along both tangents; 0 is the mirror.
+pub const ALPHA: Param = Param::number(
+    "alpha",
+    "alpha",
+    "width of the distribution; alpha = roughness^2",
+    [0.0, 2.0],
+    Preset::Value(0.25),
+)
+.also(&["m"]);
+/// `alpha_x`.
+pub const ALPHA_X: Param = Param::number(
+    "alpha_x",
+    "alpha_x",
+    "width along the tangent; equal to alpha unless given",
+    [0.0, 2.0],
+    Preset::Of("alpha"),
+);
+/// `alpha_y`.
+pub const ALPHA_Y: Param = Param::number(
+    "alpha_y",
+    "alpha_y",
+    "width along the bitangent; equal to alpha unless given",
+    [0.0, 2.0],
+    Preset::Of("alpha"),
+);
+/// `masking`.
+pub const MASKING: Param = Param::choice(
+    "masking",
+    "how Smith masking of the two directions is combined",
+    &["correlated", "separable"],
+);
+/// `f0`.
+pub const F0: Param =
+    Param::number("f0", "F0", "reflectance at normal incidence", [0.0, 1.0], Preset::Value(1.0))
+        .also(&["F0"]);
+/// `f90`.
+pub const F90: Param =
+    Param::number("f90", "F90", "reflectance at grazing incidence", [0.0, 1.0], Preset::Value(1.0))
+        .also(&["F90"]);
+/// `eta` of a dielectric.
+pub const ETA_DIELECTRIC: Param = Param::number(
+    "eta",
+    "eta",
+    "relative index of refraction, below over above; below 1 from inside, with total internal reflection",
+    [1e-3, 1e3],
+    Preset::Value(1.5),
+)
+.also(&["ior"]);
+/// `eta` of a conductor.
+pub const ETA_CONDUCTOR: Param = Param::number(
+    "eta",
+    "eta",
+    "real part of the relative index of refraction",
+    [1e-3, 1e3],
+    Preset::Value(0.2),
+)
+.also(&["n"]);
+/// `k` of a conductor.
+pub const K: Param =
+    Param::number("k", "k", "extinction coefficient; 0 is a dielectric", [0.0, 1e3], Preset::Value(3.9));
+
+/// The masking that the parameters name.
+#[must_use]
+pub fn masking(params: &Params) -> Masking {
+    if params.choice("masking") == "separable" { Masking::Separable } else { Masking::Correlated }
+}
+
+/// Both widths: each zero or neither (a groove of zero width has no density along one axis only).
+///
+/// # Errors
+/// [`ParamError::Together`] if just one is 0.
+pub fn alphas(model: &'static str, params: &Params) -> Result<[f64; 2], ParamError> {
+    let (x, y) = (params.number("alpha_x"), params.number("alpha_y"));
+    if (x > 0.0) == (y > 0.0) {
+        Ok([x, y])
+    } else {
+        let why = format!("alpha_x = {x} and alpha_y = {y}: give both a width, or neither (the mirror)");
+        Err(ParamError::Together { model, why })
+    }
+}
+
+/// Builds a boxed model from its parts.
+///
+/// # Errors
+/// As [`alphas`].
+pub fn build<D: Distribution + 'static>(
+    model: &'static str,
+    params: &Params,
+    distribution: fn([f64; 2]) -> D,
+    fresnel: Fresnel,
+) -> Result<Box<dyn Brdf>, ParamError> {
+    Ok(Box::new(Microfacet {
+        distribution: distribution(alphas(model, params)?),
+        masking: masking(params),
+        fresnel,
+    }))
+}

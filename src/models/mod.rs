@@ -1,0 +1,176 @@
+//! Reflectance models: the trait, the registry, one file a model.
+//!
+//! To add a model: write `models/NAME.rs` with a [`ModelInfo`], add `pub mod NAME;` and one line to [`MODELS`].
+//! The command line, recipe checks, test grids, file metadata and the README table follow from the registry.
+
+pub mod beckmann;
+pub mod beckmann_conductor;
+pub mod beckmann_dielectric;
+pub mod cook_torrance_1982;
+pub mod ggx;
+pub mod ggx_conductor;
+pub mod ggx_dielectric;
+pub mod lambert;
+pub mod microfacet;
+pub mod param;
+
+use crate::cite::Cite;
+use crate::integrate::{BATCH, Chart, Estimate, Nodes};
+use glam::{DVec2, DVec3};
+pub use param::{Kind, Param, ParamError, Params, Preset, Value};
+use std::fmt::Debug;
+
+/// Every model, in the order of `list models`.
+pub static MODELS: &[&ModelInfo] = &[
+    &lambert::INFO,
+    &ggx::INFO,
+    &ggx_conductor::INFO,
+    &ggx_dielectric::INFO,
+    &beckmann::INFO,
+    &beckmann_conductor::INFO,
+    &beckmann_dielectric::INFO,
+    &cook_torrance_1982::INFO,
+];
+
+/// A reflectance model at one wavelength; a colour is three models.
+///
+/// Local frame: n = +z, tangent +x. `wo` and `wi` are unit and point away from the surface.
+pub trait Brdf: Debug + Send + Sync {
+    /// The value f in 1/sr, WITHOUT the cosine; 0 when either direction is on or below the horizon; finite.
+    fn eval(&self, wo: DVec3, wi: DVec3) -> f64;
+
+    /// Draws `wi` for a pair of uniform numbers; `None` where the draw falls below the horizon.
+    fn sample(&self, wo: DVec3, u: DVec2) -> Option<Sample>;
+
+    /// Density of [`Brdf::sample`] per unit solid angle of `wi`, 1/sr.
+    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64;
+
+    /// The coordinates in which the model is smooth; `None` if it has declared none for its parameters.
+    fn chart(&self) -> Option<Chart>;
+
+    /// Values at a batch of nodes. The default calls [`Brdf::eval`]; override it where a loop over slices is faster.
+    fn eval_nodes(&self, nodes: &Nodes, out: &mut [f64; BATCH]) {
+        let wo = nodes.wo();
+        for (i, o) in out[..nodes.len].iter_mut().enumerate() {
+            *o = self.eval(wo, nodes.wi(i));
+        }
+    }
+
+    /// Reflectance of a delta lobe (a mirror) at a view cosine, if the model is one.
+    fn mirror(&self, _mu_o: f64) -> Option<f64> {
+        None
+    }
+
+    /// Directional albedo by a reduction that is cheaper than the chart, if the model knows one.
+    fn reduced_albedo(&self, _mu_o: f64, _tolerance: f64) -> Option<Estimate> {
+        None
+    }
+}
+
+/// A drawn direction and its density.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// The incident direction.
+    pub wi: DVec3,
+    /// Its density per unit solid angle.
+    pub pdf: f64,
+}
+
+/// The laws that a model claims. A claim is tested; what is not claimed needs a waiver to be baked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Laws {
+    /// f(wo, wi) = f(wi, wo).
+    pub reciprocal: bool,
+    /// E(mu) <= 1 for every mu.
+    pub passive: bool,
+    /// f depends on the difference of the azimuths only, whatever the parameters.
+    pub isotropic: bool,
+}
+
+/// A value of a model that is known from elsewhere.
+#[derive(Debug, Clone, Copy)]
+pub struct Known {
+    /// What is known.
+    pub what: Quantity,
+    /// Parameters, as `key=value`.
+    pub params: &'static [(&'static str, &'static str)],
+    /// The value.
+    pub value: f64,
+    /// Relative accuracy of the value.
+    pub relative: f64,
+    /// Where it comes from.
+    pub source: &'static str,
+}
+
+/// What a [`Known`] value is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Quantity {
+    /// f at angles `theta_i, phi_i, theta_o, phi_o` in radians.
+    Value([f64; 4]),
+    /// E at a view cosine.
+    Albedo(f64),
+}
+
+/// Another name of a model, with the parameters that it fixes.
+#[derive(Debug, Clone, Copy)]
+pub struct Alias {
+    /// The name.
+    pub name: &'static str,
+    /// Parameters that the name implies.
+    pub set: &'static [(&'static str, &'static str)],
+}
+
+/// Everything that is known of a model: the one entry from which all lists are derived.
+#[derive(Debug)]
+pub struct ModelInfo {
+    /// Id: kebab-case, equal to the file name.
+    pub id: &'static str,
+    /// Title.
+    pub title: &'static str,
+    /// Formula.
+    pub formula: &'static str,
+    /// Sources with equation numbers.
+    pub sources: &'static [(Cite, &'static str)],
+    /// Parameters.
+    pub params: &'static [Param],
+    /// Laws that it obeys.
+    pub laws: Laws,
+    /// What to know before using it: limits, stiff regimes, broken laws.
+    pub notes: &'static str,
+    /// Other names.
+    pub also: &'static [Alias],
+    /// Values known from elsewhere.
+    pub known: &'static [Known],
+    /// True if the model is `F(wo.wh)` times a factor without F, and has parameters `f0` and `f90` that can make F = 1.
+    pub splits: bool,
+    /// Builds the model.
+    pub build: fn(&Params) -> Result<Box<dyn Brdf>, ParamError>,
+}
+
+/// Parameters that a name implies.
+pub type Implied = &'static [(&'static str, &'static str)];
+
+/// Finds a model by id or by another name. The second part are the parameters that the name implies.
+#[must_use]
+pub fn find(name: &str) -> Option<(&'static ModelInfo, Implied)> {
+    MODELS.iter().find_map(|info| {
+        if info.id == name {
+            return Some((*info, &[][..]));
+        }
+        info.also.iter().find(|a| a.name == name).map(|a| (*info, a.set))
+    })
+}
+
+impl ModelInfo {
+    /// The sources as text: `Walter2007 Eq. 33`.
+    #[must_use]
+    pub fn source_lines(&self) -> Vec<String> {
+        source_lines(self.sources)
+    }
+}
+
+/// Sources as text: `Walter2007 Eq. 33: title (link)`.
+#[must_use]
+pub fn source_lines(sources: &[(Cite, &str)]) -> Vec<String> {
+    sources.iter().map(|(c, eq)| format!("{} {eq}: {} ({})", c.key, c.title, c.link)).collect()
+}

@@ -1,0 +1,278 @@
+//! Parameters of models: declared once, used by recipe checks, `describe`, test grids, file metadata and docs.
+
+use serde_json::Value as Json;
+
+/// One parameter of a model.
+#[derive(Debug, Clone, Copy)]
+pub struct Param {
+    /// Id, as in recipes.
+    pub id: &'static str,
+    /// Symbol in formulas.
+    pub symbol: &'static str,
+    /// Unit; `1` for pure numbers.
+    pub unit: &'static str,
+    /// One line of meaning.
+    pub doc: &'static str,
+    /// Other spellings that are accepted.
+    pub also: &'static [&'static str],
+    /// A number in a range, or one of a few words.
+    pub kind: Kind,
+}
+
+/// What values a parameter takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// A number in `[min, max]`.
+    Number {
+        /// Least value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+        /// Value if none is given.
+        preset: Preset,
+    },
+    /// One of a few words; the first is the default.
+    Choice(&'static [&'static str]),
+}
+
+/// The default of a number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Preset {
+    /// A fixed value.
+    Value(f64),
+    /// The value of another parameter, declared before this one.
+    Of(&'static str),
+}
+
+/// A resolved value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Value {
+    /// A number.
+    Number(f64),
+    /// A word.
+    Choice(&'static str),
+}
+
+/// What can be wrong with the parameters of a model.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ParamError {
+    /// No such parameter.
+    #[error("{model}: no parameter `{key}`; it has {allowed}{}", hint(.suggestion.as_deref()))]
+    Unknown {
+        /// Model id.
+        model: &'static str,
+        /// The key given.
+        key: String,
+        /// The keys there are.
+        allowed: String,
+        /// The nearest one.
+        suggestion: Option<String>,
+    },
+    /// A number outside its range.
+    #[error("{model}: {key} = {got} outside [{min}, {max}]")]
+    Range {
+        /// Model id.
+        model: &'static str,
+        /// The key.
+        key: &'static str,
+        /// The value given.
+        got: f64,
+        /// Least value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+    },
+    /// A value of the wrong type, or a word that is not offered.
+    #[error("{model}: {key} = {got} is not {allowed}")]
+    Kind {
+        /// Model id.
+        model: &'static str,
+        /// The key.
+        key: &'static str,
+        /// The value given.
+        got: String,
+        /// What is allowed.
+        allowed: String,
+    },
+    /// Parameters that are each in range but not together.
+    #[error("{model}: {why}")]
+    Together {
+        /// Model id.
+        model: &'static str,
+        /// Why not.
+        why: String,
+    },
+}
+
+impl ParamError {
+    /// The key at fault, if it is one.
+    #[must_use]
+    pub fn key(&self) -> Option<&str> {
+        match self {
+            ParamError::Unknown { key, .. } => Some(key),
+            ParamError::Range { key, .. } | ParamError::Kind { key, .. } => Some(key),
+            ParamError::Together { .. } => None,
+        }
+    }
+}
+
+fn hint(suggestion: Option<&str>) -> String {
+    suggestion.map_or_else(String::new, |s| format!("; did you mean `{s}`?"))
+}
+
+/// Resolved parameters: every declared one has a value in its range.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Params {
+    model: &'static str,
+    values: Vec<(&'static str, Value)>,
+}
+
+impl Params {
+    /// Resolves given JSON values against the declared parameters; what is not given gets its default.
+    ///
+    /// # Errors
+    /// [`ParamError`] names the key, what was given and what is allowed.
+    pub fn resolve<'a>(
+        model: &'static str,
+        declared: &'static [Param],
+        given: impl IntoIterator<Item = (&'a str, &'a Json)>,
+    ) -> Result<Params, ParamError> {
+        let mut set: Vec<Option<Value>> = vec![None; declared.len()];
+        for (key, value) in given {
+            let Some(i) = declared.iter().position(|p| p.id == key || p.also.contains(&key)) else {
+                return Err(unknown(model, declared, key));
+            };
+            set[i] = Some(parse(model, &declared[i], value)?);
+        }
+        let mut values: Vec<(&'static str, Value)> = Vec::with_capacity(declared.len());
+        for (param, given) in declared.iter().zip(set) {
+            let value = given.unwrap_or_else(|| match param.kind {
+                Kind::Number { preset: Preset::Value(v), .. } => Value::Number(v),
+                Kind::Number { preset: Preset::Of(id), .. } => {
+                    values.iter().find(|(k, _)| *k == id).map_or(Value::Number(f64::NAN), |(_, v)| *v)
+                }
+                Kind::Choice(words) => Value::Choice(words.first().copied().unwrap_or_default()),
+            });
+            values.push((param.id, value));
+        }
+        Ok(Params { model, values })
+    }
+
+    /// The model that these belong to.
+    #[must_use]
+    pub fn model(&self) -> &'static str {
+        self.model
+    }
+
+    /// A number; NaN if the model has no such parameter (a fault of the model's file, found by the registry test).
+    #[must_use]
+    pub fn number(&self, id: &str) -> f64 {
+        match self.values.iter().find(|(k, _)| *k == id) {
+            Some((_, Value::Number(v))) => *v,
+            _ => f64::NAN,
+        }
+    }
+
+    /// A word; empty if the model has no such parameter.
+    #[must_use]
+    pub fn choice(&self, id: &str) -> &'static str {
+        match self.values.iter().find(|(k, _)| *k == id) {
+            Some((_, Value::Choice(v))) => v,
+            _ => "",
+        }
+    }
+
+    /// Replaces a number by the value of an axis. Returns false if there is no such number.
+    pub fn set(&mut self, id: &str, value: f64) -> bool {
+        match self.values.iter_mut().find(|(k, _)| *k == id) {
+            Some((_, Value::Number(v))) => {
+                *v = value;
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// All values in declared order.
+    #[must_use]
+    pub fn values(&self) -> &[(&'static str, Value)] {
+        &self.values
+    }
+
+    /// All values as JSON, without those in `skip`.
+    #[must_use]
+    pub fn to_json(&self, skip: &[&str]) -> serde_json::Map<String, Json> {
+        let json = |v: &Value| match v {
+            Value::Number(n) => Json::from(*n),
+            Value::Choice(c) => Json::from(*c),
+        };
+        self.values
+            .iter()
+            .filter(|(k, _)| !skip.contains(k))
+            .map(|(k, v)| ((*k).to_owned(), json(v)))
+            .collect()
+    }
+}
+
+fn unknown(model: &'static str, declared: &[Param], key: &str) -> ParamError {
+    let ids: Vec<&str> = declared.iter().map(|p| p.id).collect();
+    ParamError::Unknown {
+        model,
+        key: key.to_owned(),
+        allowed: if ids.is_empty() { "none".to_owned() } else { ids.join(", ") },
+        suggestion: crate::math::nearest::nearest(key, ids.iter().copied()).map(str::to_owned),
+    }
+}
+
+fn parse(model: &'static str, param: &Param, value: &Json) -> Result<Value, ParamError> {
+    let wrong = |allowed: String| ParamError::Kind { model, key: param.id, got: value.to_string(), allowed };
+    match param.kind {
+        Kind::Number { min, max, .. } => {
+            let got = value.as_f64().ok_or_else(|| wrong("a number".to_owned()))?;
+            if !(got >= min && got <= max) {
+                return Err(ParamError::Range { model, key: param.id, got, min, max });
+            }
+            Ok(Value::Number(got))
+        }
+        Kind::Choice(words) => words
+            .iter()
+            .find(|w| value.as_str() == Some(w))
+            .map(|w| Value::Choice(w))
+            .ok_or_else(|| wrong(format!("one of {}", words.join(", ")))),
+    }
+}
+
+impl Param {
+    /// A number parameter.
+    #[must_use]
+    pub const fn number(
+        id: &'static str,
+        symbol: &'static str,
+        doc: &'static str,
+        range: [f64; 2],
+        preset: Preset,
+    ) -> Param {
+        Param {
+            id,
+            symbol,
+            unit: "1",
+            doc,
+            also: &[],
+            kind: Kind::Number { min: range[0], max: range[1], preset },
+        }
+    }
+
+    /// A choice parameter; the first word is the default.
+    #[must_use]
+    pub const fn choice(id: &'static str, doc: &'static str, words: &'static [&'static str]) -> Param {
+        Param { id, symbol: "", unit: "", doc, also: &[], kind: Kind::Choice(words) }
+    }
+
+    /// The same parameter with other accepted spellings.
+    #[must_use]
+    pub const fn also(mut self, names: &'static [&'static str]) -> Param {
+        self.also = names;
+        self
+    }
+}

@@ -1,0 +1,162 @@
+//! The one loop over texels: threads, progress and cancelling live here and nowhere else.
+//!
+//! Rows are computed in parallel and collected in order; each texel depends only on its coordinates, so the bytes do
+//! not depend on the number of threads.
+
+use super::{Bound, TexelError};
+use crate::grid::Table;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+/// What to do with a texel whose error estimate stays above the tolerance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum OnMiss {
+    /// It is an error.
+    #[default]
+    Fail,
+    /// It is counted and reported in the file.
+    Report,
+}
+
+/// How to bake.
+#[derive(Clone, Copy)]
+pub struct Options<'a> {
+    /// Absolute tolerance of each channel.
+    pub tolerance: f64,
+    /// What to do with a texel that misses it.
+    pub on_miss: OnMiss,
+    /// Set from outside to stop.
+    pub cancel: &'a AtomicBool,
+    /// Called with the number of finished texels.
+    pub progress: &'a (dyn Fn(usize) + Sync),
+}
+
+impl std::fmt::Debug for Options<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Options").field("tolerance", &self.tolerance).field("on_miss", &self.on_miss).finish()
+    }
+}
+
+/// Why a table could not be baked.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BakeError {
+    /// A texel has no value.
+    #[error("texel {texel} ({place}): {error}")]
+    Texel {
+        /// Texel number.
+        texel: usize,
+        /// Its coordinates.
+        place: String,
+        /// Why.
+        error: TexelError,
+    },
+    /// Texels that miss the tolerance.
+    #[error(
+        "{count} texels miss the tolerance {tolerance:e}; the worst is texel {texel} ({place}) with an estimated error of {estimate:e}. \
+         Ask for a larger tolerance, move the axis off the stiff corner, or set `on-miss = \"report\"`"
+    )]
+    Missed {
+        /// How many.
+        count: usize,
+        /// The tolerance.
+        tolerance: f64,
+        /// The worst texel.
+        texel: usize,
+        /// Its coordinates.
+        place: String,
+        /// Its estimate.
+        estimate: f64,
+    },
+    /// Stopped from outside.
+    #[error("interrupted")]
+    Cancelled,
+}
+
+struct Row {
+    values: Vec<f64>,
+    errors: Vec<f64>,
+    evaluations: Vec<u32>,
+}
+
+/// Bakes a table on the current rayon pool.
+///
+/// # Errors
+/// [`BakeError`]; the first texel in order is named, whatever the number of threads.
+pub fn bake(bound: &Bound, options: Options<'_>) -> Result<Table, BakeError> {
+    let grid = &bound.spec.grid;
+    let width = grid.extent()[0];
+    let rows = grid.len() / width;
+    let done = AtomicUsize::new(0);
+    let results: Vec<Result<Row, BakeError>> = (0..rows)
+        .into_par_iter()
+        .map(|y| {
+            let row = bake_row(bound, y * width..(y + 1) * width, options)?;
+            (options.progress)(done.fetch_add(width, Ordering::Relaxed) + width);
+            Ok(row)
+        })
+        .collect();
+    let mut table = Table {
+        grid: grid.clone(),
+        channels: bound.spec.channels(),
+        values: Vec::new(),
+        errors: Vec::new(),
+        evaluations: Vec::new(),
+    };
+    for row in results {
+        let row = row?;
+        table.values.extend(row.values);
+        table.errors.extend(row.errors);
+        table.evaluations.extend(row.evaluations);
+    }
+    if options.on_miss == OnMiss::Fail {
+        check_tolerance(&table, options.tolerance)?;
+    }
+    Ok(table)
+}
+
+fn bake_row(bound: &Bound, texels: std::ops::Range<usize>, options: Options<'_>) -> Result<Row, BakeError> {
+    let channels = bound.spec.layout.channels.len();
+    let grid = &bound.spec.grid;
+    let mut row = Row { values: Vec::new(), errors: Vec::new(), evaluations: Vec::new() };
+    for texel in texels {
+        if options.cancel.load(Ordering::Relaxed) {
+            return Err(BakeError::Cancelled);
+        }
+        let e = bound
+            .baker
+            .texel(grid.texel(texel).values(), options.tolerance)
+            .map_err(|error| BakeError::Texel { texel, place: super::place(grid, texel), error })?;
+        row.values.extend_from_slice(&e.value[..channels]);
+        row.errors.extend_from_slice(&e.error[..channels]);
+        row.evaluations.push(e.evaluations);
+    }
+    Ok(row)
+}
+
+/// Number of texels of which some channel's estimate is above the tolerance.
+#[must_use]
+pub fn missed(table: &Table, tolerance: f64) -> usize {
+    table.errors.chunks(table.channels.len()).filter(|e| e.iter().any(|e| !within(*e, tolerance))).count()
+}
+
+/// NaN is never within.
+fn within(error: f64, tolerance: f64) -> bool {
+    error <= tolerance
+}
+
+fn check_tolerance(table: &Table, tolerance: f64) -> Result<(), BakeError> {
+    let count = missed(table, tolerance);
+    if count == 0 {
+        return Ok(());
+    }
+    let mut worst = 0;
+    for (i, e) in table.errors.iter().enumerate() {
+        if *e > table.errors[worst] {
+            worst = i;
+        }
+    }
+    let texel = worst / table.channels.len();
+    let place = super::place(&table.grid, texel);
+    Err(BakeError::Missed { count, tolerance, texel, place, estimate: table.errors[worst] })
+}

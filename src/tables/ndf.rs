@@ -1,0 +1,87 @@
+//! The microfacet distribution over the cosine of the microfacet normal and the width.
+
+use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use crate::cite;
+use crate::grid::{Axis, Quantity, Texel, Warp};
+use crate::integrate::{Estimate, MAX_CHANNELS};
+use crate::models::Param;
+use crate::terms::{beckmann, ggx};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// Registry entry.
+pub static INFO: TableInfo = TableInfo {
+    id: "ndf",
+    title: "Microfacet distribution D",
+    formula: "D(mu_m, alpha); relative layout: pi alpha^2 D = D / D(1)",
+    sources: &[(cite::WALTER_2007, "Eq. 25 (Beckmann), Eq. 33 (GGX)")],
+    coordinates: &["mu_m", "alpha"],
+    layouts: &[
+        Layout {
+            id: "relative",
+            doc: "D = texel / (pi alpha^2)",
+            channels: &[ChannelInfo { id: "ndf.relative", meaning: "pi alpha^2 D(mu_m)", range: [0.0, 1.0] }],
+        },
+        Layout {
+            id: "absolute",
+            doc: "D in 1/sr; at alpha below 0.0023 its peak does not fit a half float",
+            channels: &[ChannelInfo { id: "ndf.d", meaning: "D(mu_m), 1/sr", range: [0.0, f64::INFINITY] }],
+        },
+    ],
+    model: ModelUse::None,
+    params: &[Param::choice("distribution", "which distribution", &["ggx", "beckmann"])],
+    laws: &["finite", "range", "normalised"],
+    axes: default_axes,
+    notes: "The peak has the width alpha: spread mu_m with `one-minus-power` (fine near mu_m = 1). At alpha -> 0 no fixed axis resolves it.",
+    bind,
+};
+
+fn default_axes() -> Vec<Axis> {
+    let axis = |id: &str, domain: [f64; 2], warp| {
+        Quantity::find(id).map(|q| Axis::new(q, 128, Texel::Endpoint).over(domain).warped(warp))
+    };
+    [axis("mu_m", [0.0, 1.0], Warp::OneMinusPower(0.25)), axis("roughness", [0.05, 1.0], Warp::Linear)]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+struct Ndf {
+    mu: usize,
+    alpha: usize,
+    beckmann: bool,
+    relative: bool,
+}
+
+fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
+    let at = |id| spec.grid.axes().iter().position(|a| a.quantity.base_id() == id).unwrap_or(0);
+    Ok(Box::new(Ndf {
+        mu: at("mu_m"),
+        alpha: at("alpha"),
+        beckmann: spec.params.choice("distribution") == "beckmann",
+        relative: spec.layout.id == "relative",
+    }))
+}
+
+/// D of the named distribution at a cosine.
+#[must_use]
+pub fn d(beckmann_d: bool, mu_m: f64, alpha: f64) -> f64 {
+    let wm = DVec3::new(((1.0 - mu_m) * (1.0 + mu_m)).max(0.0).sqrt(), 0.0, mu_m);
+    if beckmann_d { beckmann::d(wm, alpha, alpha) } else { ggx::d(wm, alpha, alpha) }
+}
+
+impl Baker for Ndf {
+    fn texel(&self, at: &[f64], _tolerance: f64) -> Result<Estimate, TexelError> {
+        let (mu, alpha) = (at[self.mu], at[self.alpha]);
+        let mut value = [0.0; MAX_CHANNELS];
+        value[0] = d(self.beckmann, mu, alpha) * if self.relative { PI * alpha * alpha } else { 1.0 };
+        if !value[0].is_finite() {
+            return Err(TexelError::NotFinite { channel: 0, value: value[0] });
+        }
+        Ok(Estimate::exact(value))
+    }
+
+    fn rule(&self) -> String {
+        "closed form".to_owned()
+    }
+}

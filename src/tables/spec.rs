@@ -1,0 +1,240 @@
+//! A table with everything resolved: kind, layout, model, parameters, axes.
+
+use super::{Baker, Layout, ModelUse, TableInfo};
+use crate::grid::{Axis, Channel, Grid, GridError};
+use crate::models::{self, ModelInfo, ParamError, Params};
+use serde_json::{Map, Value as Json};
+
+/// A resolved table: what [`TableInfo::bind`] takes and what metadata is written from.
+#[derive(Debug, Clone)]
+pub struct Spec {
+    /// The kind.
+    pub kind: &'static TableInfo,
+    /// The channel layout.
+    pub layout: &'static Layout,
+    /// The model and its parameters, for kinds that have one.
+    pub model: Option<(&'static ModelInfo, Params)>,
+    /// The kind's own parameters.
+    pub params: Params,
+    /// The axes.
+    pub grid: Grid,
+}
+
+/// A [`Spec`] with its baker.
+pub struct Bound {
+    /// What is baked.
+    pub spec: Spec,
+    /// Computes its texels.
+    pub baker: Box<dyn Baker>,
+}
+
+impl std::fmt::Debug for Bound {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Bound").field("spec", &self.spec).finish_non_exhaustive()
+    }
+}
+
+/// What a recipe or a caller asks for, before it is resolved.
+#[derive(Debug, Clone, Default)]
+pub struct Request {
+    /// Table kind id.
+    pub kind: String,
+    /// Layout id; the default layout if none.
+    pub layout: Option<String>,
+    /// Model id; the kind's default if none.
+    pub model: Option<String>,
+    /// Parameters of model and kind.
+    pub params: Map<String, Json>,
+    /// Axes; the kind's defaults if none.
+    pub axes: Option<Vec<Axis>>,
+}
+
+/// What can be wrong with a request.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BindError {
+    /// No such table kind, layout or model.
+    #[error("no {what} `{got}`; there is {allowed}{}", .suggestion.as_deref().map(|s| format!("; did you mean `{s}`?")).unwrap_or_default())]
+    Unknown {
+        /// `table`, `layout` or `model`.
+        what: &'static str,
+        /// What was asked for.
+        got: String,
+        /// What there is.
+        allowed: String,
+        /// The nearest.
+        suggestion: Option<String>,
+    },
+    /// A model given to a kind that has none, or of the wrong sort.
+    #[error("table {kind}: model `{model}` {why}")]
+    Model {
+        /// Table kind.
+        kind: &'static str,
+        /// Model id.
+        model: String,
+        /// Why not.
+        why: &'static str,
+    },
+    /// A bad parameter.
+    #[error(transparent)]
+    Param(#[from] ParamError),
+    /// A bad axis.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    /// A coordinate that must be swept is on no axis.
+    #[error("table {kind}: needs an axis for {needed}; it has {got}")]
+    MissingAxis {
+        /// Table kind.
+        kind: &'static str,
+        /// The coordinate.
+        needed: &'static str,
+        /// The axes given.
+        got: String,
+    },
+    /// An axis that nothing in the table depends on.
+    #[error("table {kind}: nothing in it depends on axis {axis}; it can sweep {allowed}")]
+    IdleAxis {
+        /// Table kind.
+        kind: &'static str,
+        /// The axis.
+        axis: &'static str,
+        /// What can be swept.
+        allowed: String,
+    },
+    /// A parameter that is both fixed and swept.
+    #[error("table {kind}: `{key}` is both a fixed parameter and an axis")]
+    Both {
+        /// Table kind.
+        kind: &'static str,
+        /// The parameter.
+        key: String,
+    },
+}
+
+impl Request {
+    /// Resolves and binds.
+    ///
+    /// # Errors
+    /// [`BindError`] names what is wrong and what is allowed.
+    pub fn bind(&self) -> Result<Bound, BindError> {
+        let spec = self.resolve()?;
+        let baker = (spec.kind.bind)(&spec)?;
+        Ok(Bound { spec, baker })
+    }
+
+    fn resolve(&self) -> Result<Spec, BindError> {
+        let kind = super::find(&self.kind)
+            .ok_or_else(|| unknown("table", &self.kind, super::TABLES.iter().map(|t| t.id)))?;
+        let layout = match &self.layout {
+            None => &kind.layouts[0],
+            Some(id) => kind
+                .layouts
+                .iter()
+                .find(|l| l.id == id)
+                .ok_or_else(|| unknown("layout", id, kind.layouts.iter().map(|l| l.id)))?,
+        };
+        let grid = Grid::new(self.axes.clone().unwrap_or_else(kind.axes))?;
+        let (model, model_params, table_params) = self.split_params(kind)?;
+        let params = Params::resolve(kind.id, kind.params, borrowed(&table_params))?;
+        let model = match model {
+            Some((info, implied)) => {
+                let implied: Map<String, Json> =
+                    implied.iter().map(|(k, v)| ((*k).to_owned(), Json::from(*v))).collect();
+                let all = borrowed(&implied).chain(borrowed(&model_params));
+                Some((info, Params::resolve(info.id, info.params, all)?))
+            }
+            None => None,
+        };
+        check_axes(kind, &grid, model.as_ref(), &self.params)?;
+        Ok(Spec { kind, layout, model, params, grid })
+    }
+
+    /// The model, and the given parameters parted between model and table kind.
+    #[allow(clippy::type_complexity, reason = "a private triple, named by its only caller")]
+    fn split_params(
+        &self,
+        kind: &'static TableInfo,
+    ) -> Result<
+        (Option<(&'static ModelInfo, models::Implied)>, Map<String, Json>, Map<String, Json>),
+        BindError,
+    > {
+        let id = match (kind.model, &self.model) {
+            (ModelUse::None, None) => return Ok((None, Map::new(), self.params.clone())),
+            (ModelUse::None, Some(model)) => {
+                return Err(BindError::Model {
+                    kind: kind.id,
+                    model: model.clone(),
+                    why: "given, but this table has none",
+                });
+            }
+            (ModelUse::Any(default) | ModelUse::Split(default), given) => given.as_deref().unwrap_or(default),
+        };
+        let (info, implied) =
+            models::find(id).ok_or_else(|| unknown("model", id, models::MODELS.iter().map(|m| m.id)))?;
+        if matches!(kind.model, ModelUse::Split(_)) && !info.splits {
+            let why = "has a Fresnel factor that cannot be split off; use one with parameters f0 and f90, such as `ggx`";
+            return Err(BindError::Model { kind: kind.id, model: id.to_owned(), why });
+        }
+        let own = |key: &str| kind.params.iter().any(|p| p.id == key);
+        let (table, model): (Map<_, _>, Map<_, _>) =
+            self.params.clone().into_iter().partition(|(k, _)| own(k));
+        Ok((Some((info, implied)), model, table))
+    }
+}
+
+impl Spec {
+    /// Channels of the layout.
+    #[must_use]
+    pub fn channels(&self) -> Vec<Channel> {
+        self.layout.channels.iter().map(super::ChannelInfo::channel).collect()
+    }
+}
+
+fn borrowed(map: &Map<String, Json>) -> impl Iterator<Item = (&str, &Json)> {
+    map.iter().map(|(k, v)| (k.as_str(), v))
+}
+
+pub(super) fn unknown<'a>(
+    what: &'static str,
+    got: &str,
+    ids: impl Iterator<Item = &'a str> + Clone,
+) -> BindError {
+    BindError::Unknown {
+        what,
+        got: got.to_owned(),
+        allowed: ids.clone().collect::<Vec<_>>().join(", "),
+        suggestion: crate::math::nearest::nearest(got, ids).map(str::to_owned),
+    }
+}
+
+fn check_axes(
+    kind: &'static TableInfo,
+    grid: &Grid,
+    model: Option<&(&'static ModelInfo, Params)>,
+    given: &Map<String, Json>,
+) -> Result<(), BindError> {
+    let bases: Vec<&'static str> = grid.axes().iter().map(|a| a.quantity.base_id()).collect();
+    for needed in kind.coordinates {
+        if !bases.contains(needed) {
+            let got = grid.axes().iter().map(|a| a.quantity.id).collect::<Vec<_>>().join(", ");
+            return Err(BindError::MissingAxis { kind: kind.id, needed, got });
+        }
+    }
+    let numbers: Vec<&'static str> = model
+        .iter()
+        .flat_map(|(info, _)| info.params)
+        .chain(kind.params)
+        .filter(|p| matches!(p.kind, models::Kind::Number { .. }))
+        .map(|p| p.id)
+        .collect();
+    for (axis, base) in grid.axes().iter().zip(&bases) {
+        if !kind.coordinates.contains(base) && !numbers.contains(base) {
+            let allowed = kind.coordinates.iter().chain(&numbers).copied().collect::<Vec<_>>().join(", ");
+            return Err(BindError::IdleAxis { kind: kind.id, axis: axis.quantity.id, allowed });
+        }
+        if given.contains_key(*base) {
+            return Err(BindError::Both { kind: kind.id, key: (*base).to_owned() });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,78 @@
+//! From a point of the grid to a model: which axis is the view cosine, which ones are parameters.
+
+use super::{BindError, Spec, TexelError};
+use crate::models::{Brdf, ModelInfo, Params};
+
+/// A model whose parameters follow the axes of a grid.
+#[derive(Debug, Clone)]
+pub struct Sweep {
+    info: &'static ModelInfo,
+    params: Params,
+    /// Axis number of the view cosine, if one sweeps it.
+    mu: Option<usize>,
+    /// Axis number and parameter id of the swept parameters.
+    swept: Vec<(usize, &'static str)>,
+}
+
+impl Sweep {
+    /// From a spec that has a model. `white` sets `f0 = f90 = 1`, for tables that split the Fresnel factor off.
+    ///
+    /// # Errors
+    /// [`BindError::Model`] if the spec has none.
+    pub fn new(spec: &Spec, white: bool) -> Result<Sweep, BindError> {
+        let missing = || BindError::Model { kind: spec.kind.id, model: String::new(), why: "is missing" };
+        let (info, params) = spec.model.as_ref().ok_or_else(missing)?;
+        let mut params = params.clone();
+        if white {
+            params.set("f0", 1.0);
+            params.set("f90", 1.0);
+        }
+        let mut sweep = Sweep { info, params, mu: None, swept: Vec::new() };
+        for (i, axis) in spec.grid.axes().iter().enumerate() {
+            match axis.quantity.base_id() {
+                "mu" => sweep.mu = Some(i),
+                id => sweep.swept.push((i, id)),
+            }
+        }
+        Ok(sweep)
+    }
+
+    /// The model that is swept.
+    #[must_use]
+    pub fn info(&self) -> &'static ModelInfo {
+        self.info
+    }
+
+    /// View cosine at a point (1 if no axis sweeps it).
+    #[must_use]
+    pub fn mu(&self, at: &[f64]) -> f64 {
+        self.mu.map_or(1.0, |i| at[i])
+    }
+
+    /// Parameters at a point.
+    #[must_use]
+    pub fn params(&self, at: &[f64]) -> Params {
+        let mut params = self.params.clone();
+        for &(i, id) in &self.swept {
+            let before = params.number(id);
+            params.set(id, at[i]);
+            // alpha_x and alpha_y follow alpha unless they were set apart
+            if id == "alpha" {
+                for other in ["alpha_x", "alpha_y"] {
+                    if (params.number(other) - before).abs() == 0.0 {
+                        params.set(other, at[i]);
+                    }
+                }
+            }
+        }
+        params
+    }
+
+    /// The model at a point.
+    ///
+    /// # Errors
+    /// [`TexelError::Param`] where the model refuses the parameters.
+    pub fn model(&self, at: &[f64]) -> Result<Box<dyn Brdf>, TexelError> {
+        Ok((self.info.build)(&self.params(at))?)
+    }
+}

@@ -1,0 +1,25 @@
+//! Every value is finite and not negative.
+
+use super::{Case, Law, Outcome};
+use crate::tables::place;
+
+/// The law.
+pub static LAW: Law = Law {
+    id: "finite",
+    statement: "every value is finite and not negative, within its error",
+    margin: "smallest value plus its error estimate",
+    code: 4001,
+    check,
+};
+
+fn check(case: &Case<'_>) -> Outcome {
+    let mut outcome = Outcome::start();
+    let channels = case.table.channels.len();
+    for (i, (&v, &e)) in case.table.values.iter().zip(&case.table.errors).enumerate() {
+        let margin = if v.is_finite() { v + e } else { f64::NEG_INFINITY };
+        outcome.tighten(margin, || {
+            format!("{}, {}", case.table.channels[i % channels].id, place(&case.table.grid, i / channels))
+        });
+    }
+    outcome
+}
