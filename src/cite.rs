@@ -34,12 +34,16 @@ cites! {
     HEITZ_2014 = "Heitz2014", "Heitz: Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs, JCGT 3(2)", 2014, "https://jcgt.org/published/0003/02/03/";
     /// Heitz, sampling of GGX visible normals.
     HEITZ_2018 = "Heitz2018", "Heitz: Sampling the GGX Distribution of Visible Normals, JCGT 7(4)", 2018, "https://jcgt.org/published/0007/04/01/";
+    /// Hoffman, Schlick's approximation reconsidered for metals.
+    HOFFMAN_2019 = "Hoffman2019", "Hoffman: Fresnel Equations Considered Harmful, MAM workshop", 2019, "https://doi.org/10.2312/mam.20191305";
     /// Karis, split-sum environment lighting.
     KARIS_2013 = "Karis2013", "Karis: Real Shading in Unreal Engine 4, SIGGRAPH course", 2013, "https://blog.selfshadow.com/publications/s2013-shading-course/";
     /// Kelemen and Szirmay-Kalos, the coupled matte and specular model.
     KELEMEN_2001 = "Kelemen2001", "Kelemen, Szirmay-Kalos: A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling, Eurographics short papers", 2001, "https://doi.org/10.2312/egs.20011031";
     /// Kulla and Conty, energy compensation in production.
     KULLA_CONTY_2017 = "KullaConty2017", "Kulla, Conty: Revisiting Physically Based Shading at Imageworks, SIGGRAPH course", 2017, "https://blog.selfshadow.com/publications/s2017-shading-course/";
+    /// Kutz and others, the F82 tint of metals.
+    KUTZ_2021 = "Kutz2021", "Kutz, Hasan, Edmondson: Novel Aspects of the Adobe Standard Material, technical report", 2021, "https://experienceleague.adobe.com/en/docs/substance-3d/general-knowledge/asm/asm-technical-documentation";
     /// Lambert's Photometria.
     LAMBERT_1760 = "Lambert1760", "Lambert: Photometria", 1760, "https://archive.org/details/lambertsphotome00lambgoog";
     /// Born and Wolf, the textbook of optics.

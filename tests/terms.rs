@@ -5,5 +5,7 @@
 
 #[path = "terms/fresnel.rs"]
 mod fresnel;
+#[path = "terms/schlick.rs"]
+mod schlick;
 #[path = "terms/values.rs"]
 mod values;

@@ -1,3 +1,4 @@
 //! The factors of the papers (D, Lambda, G1, G2, Fresnel) in closed, cancellation-free form.
 
 pub mod fresnel;
+pub mod schlick;
