@@ -5,6 +5,8 @@
 
 #[path = "terms/fresnel.rs"]
 mod fresnel;
+#[path = "terms/microfacet.rs"]
+mod microfacet;
 #[path = "terms/schlick.rs"]
 mod schlick;
 #[path = "terms/values.rs"]
