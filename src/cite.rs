@@ -22,6 +22,8 @@ macro_rules! cites {
 }
 
 cites! {
+    /// Burley, the Disney principled model and its distributions.
+    BURLEY_2012 = "Burley2012", "Burley: Physically-Based Shading at Disney, SIGGRAPH course", 2012, "https://blog.selfshadow.com/publications/s2012-shading-course/";
     /// Cook and Torrance, the first microfacet model of graphics.
     COOK_TORRANCE_1982 = "CookTorrance1982", "Cook, Torrance: A Reflectance Model for Computer Graphics, ACM TOG 1(1)", 1982, "https://doi.org/10.1145/357290.357293";
     /// d'Eon and Luebke, the skin chapter of GPU Gems 3.
@@ -30,16 +32,24 @@ cites! {
     DLMF = "DLMF", "Olver and others (eds.): NIST Digital Library of Mathematical Functions", 2010, "https://dlmf.nist.gov/";
     /// Duntley, average reflectance of interfaces in diffuse light.
     DUNTLEY_1942 = "Duntley1942", "Duntley: The Optical Properties of Diffusing Materials, JOSA 32(2)", 1942, "https://doi.org/10.1364/JOSA.32.000061";
+    /// Dupuy and Benyoub, visible normals of GGX as a spherical cap.
+    DUPUY_BENYOUB_2023 = "DupuyBenyoub2023", "Dupuy, Benyoub: Sampling Visible GGX Normals with Spherical Caps, CGF 42(8)", 2023, "https://doi.org/10.1111/cgf.14867";
     /// Heitz, the review of masking-shadowing functions.
     HEITZ_2014 = "Heitz2014", "Heitz: Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs, JCGT 3(2)", 2014, "https://jcgt.org/published/0003/02/03/";
     /// Heitz, sampling of GGX visible normals.
     HEITZ_2018 = "Heitz2018", "Heitz: Sampling the GGX Distribution of Visible Normals, JCGT 7(4)", 2018, "https://jcgt.org/published/0007/04/01/";
+    /// Heitz and d'Eon, sampling of visible normals.
+    HEITZ_DEON_2014 = "HeitzDeon2014", "Heitz, d'Eon: Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals, CGF 33(4)", 2014, "https://doi.org/10.1111/cgf.12417";
+    /// Hoffman, Schlick's approximation reconsidered for metals.
+    HOFFMAN_2019 = "Hoffman2019", "Hoffman: Fresnel Equations Considered Harmful, MAM workshop", 2019, "https://doi.org/10.2312/mam.20191305";
     /// Karis, split-sum environment lighting.
     KARIS_2013 = "Karis2013", "Karis: Real Shading in Unreal Engine 4, SIGGRAPH course", 2013, "https://blog.selfshadow.com/publications/s2013-shading-course/";
     /// Kelemen and Szirmay-Kalos, the coupled matte and specular model.
     KELEMEN_2001 = "Kelemen2001", "Kelemen, Szirmay-Kalos: A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling, Eurographics short papers", 2001, "https://doi.org/10.2312/egs.20011031";
     /// Kulla and Conty, energy compensation in production.
     KULLA_CONTY_2017 = "KullaConty2017", "Kulla, Conty: Revisiting Physically Based Shading at Imageworks, SIGGRAPH course", 2017, "https://blog.selfshadow.com/publications/s2017-shading-course/";
+    /// Kutz and others, the F82 tint of metals.
+    KUTZ_2021 = "Kutz2021", "Kutz, Hasan, Edmondson: Novel Aspects of the Adobe Standard Material, technical report", 2021, "https://experienceleague.adobe.com/en/docs/substance-3d/general-knowledge/asm/asm-technical-documentation";
     /// Lambert's Photometria.
     LAMBERT_1760 = "Lambert1760", "Lambert: Photometria", 1760, "https://archive.org/details/lambertsphotome00lambgoog";
     /// Born and Wolf, the textbook of optics.

@@ -5,5 +5,9 @@
 
 #[path = "terms/fresnel.rs"]
 mod fresnel;
+#[path = "terms/microfacet.rs"]
+mod microfacet;
+#[path = "terms/schlick.rs"]
+mod schlick;
 #[path = "terms/values.rs"]
 mod values;

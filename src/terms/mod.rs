@@ -1,3 +1,7 @@
 //! The factors of the papers (D, Lambda, G1, G2, Fresnel) in closed, cancellation-free form.
 
+pub mod beckmann;
 pub mod fresnel;
+pub mod ggx;
+pub mod schlick;
+pub mod smith;
