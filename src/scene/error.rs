@@ -26,7 +26,7 @@ impl std::error::Error for SceneError {
     }
 }
 
-/// A fault of a scene file. Only [`Fault::Io`] is the machine's; all others are the file's.
+/// A fault of a scene file. Only [`Fault::Io`] is the machine's (exit code 5); all others are the file's (3).
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Fault {
@@ -84,7 +84,7 @@ pub enum Fault {
     },
     /// The header's length is impossible.
     #[error(
-        "GLB header declares {declared} bytes, allowed 20 to the file's {actual}; the file is cut or forged"
+        "GLB header declares {declared} bytes, allowed 20 to {actual} (the file's size); the file is cut or forged"
     )]
     GlbLength {
         /// Length in the header.
@@ -159,7 +159,7 @@ pub enum Fault {
         expected: &'static str,
     },
     /// A number outside its range.
-    #[error("out of range: {at} = {got}, allowed {allowed}")]
+    #[error("out of range: {at} = {got:?}, allowed {allowed}")]
     Range {
         /// JSON path.
         at: String,
@@ -169,7 +169,7 @@ pub enum Fault {
         allowed: &'static str,
     },
     /// An index that points at nothing.
-    #[error("dangling index: {at} = {got}, but the file has {len} {what}")]
+    #[error("dangling index: {at} = {got}; {what} in the file: {len}")]
     Index {
         /// JSON path.
         at: String,
@@ -204,8 +204,8 @@ pub enum Fault {
 /// Text of a file, made safe for a terminal: control characters escaped, cut after 64 characters.
 pub(super) fn show(text: &str) -> String {
     const LONGEST: usize = 64;
-    // A quote or an apostrophe is harmless and reads better as it is.
-    let escaped = |c: char| if matches!(c, '"' | '\'') { vec![c] } else { c.escape_debug().collect() };
+    // Quotes and backslashes are harmless and read better as they are.
+    let escaped = |c: char| if matches!(c, '"' | '\'' | '\\') { vec![c] } else { c.escape_debug().collect() };
     let mut out: String = text.chars().take(LONGEST).flat_map(escaped).collect();
     if text.chars().nth(LONGEST).is_some() {
         out.push('…');

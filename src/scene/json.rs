@@ -14,9 +14,16 @@ pub(super) enum Step<'a> {
 }
 
 /// A path as text: `materials[3].pbrMetallicRoughness.roughnessFactor`; the root is `the document`.
-pub(super) fn path<'a>(steps: impl Iterator<Item = Step<'a>>) -> String {
+///
+/// A path of more than 16 steps is cut after 12, for nesting may be 128 deep.
+pub(super) fn path<'a>(steps: impl ExactSizeIterator<Item = Step<'a>>) -> String {
     let mut out = String::new();
-    for step in steps {
+    let shown = if steps.len() > 16 { 12 } else { 16 };
+    for (i, step) in steps.enumerate() {
+        if i == shown {
+            out.push('…');
+            break;
+        }
         match step {
             Step::Index(i) => out.push_str(&format!("[{i}]")),
             Step::Key(key) if plain(key) => {

@@ -19,6 +19,8 @@ pub enum Spread {
 }
 
 /// The values that a factor can take over a surface and over time, in [0, 1].
+///
+/// Accuracy: `serde_json` reads a decimal to within 1 ulp, so 0.029999999329447746 may end in 3.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
     /// Smallest value.
@@ -241,12 +243,13 @@ fn read_switch(switch: &Switch, node: &Node<'_>, moves: &dyn Fn(&str) -> bool) -
         Switch::Factor(key, allowed) => (key, node.factor(key, 0.0, allowed)?),
         Switch::Colour(key, allowed) => (key, node.brightest(key, allowed)?),
     };
-    let black = if matches!(switch, Switch::Colour(..)) { "black" } else { "0" };
+    let colour = matches!(switch, Switch::Colour(..));
     Ok(match (strength > 0.0, moves(key)) {
         (_, true) => State::On(format!("{key} is animated")),
-        (true, false) if black == "black" => State::On(format!("{key} is not black")),
+        (true, false) if colour => State::On(format!("{key} is not black")),
         (true, false) => State::On(format!("{key} = {strength}")),
-        (false, false) => State::Off(format!("{key} = {black}")),
+        (false, false) if colour => State::Off(format!("{key} is black")),
+        (false, false) => State::Off(format!("{key} = 0")),
     })
 }
 

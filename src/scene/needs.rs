@@ -70,7 +70,7 @@ pub enum LeftOutKind {
 pub struct LeftOut {
     /// Why, in one word for programs.
     pub kind: LeftOutKind,
-    /// An extension, `material`, or `file`.
+    /// An extension, `material`, `base layer`, or `file`.
     pub what: String,
     /// Why, in words.
     pub why: String,
@@ -197,6 +197,7 @@ impl Collector {
         if replaced && !material.metallic_roughness {
             return;
         }
+        // KHR_materials_specular: a factor of 0 disables the reflection, F90 included.
         if material.base_is_black() {
             let why = "no reflection: specularFactor = 0 and metallicFactor = 0";
             return self.leave(LeftOutKind::AsksForNothing, "base layer", why, Some(by.clone()));
