@@ -3,11 +3,12 @@
 //! It is here because lectures still teach it. Its albedo reaches 4; a bake of it needs a waiver.
 //! Recipe: `model = "cook-torrance-1982"`, `waive = [{ law = "energy", reason = "comparison" }]`.
 
-use super::microfacet::{ALPHA, Beckmann, Distribution, F0, F90, Fresnel};
+use super::microfacet::{ALPHA, Beckmann, F0, F90, Fresnel};
 use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity, Sample};
 use crate::cite;
 use crate::integrate::Chart;
 use crate::math::frame;
+use crate::terms::smith::Ndf;
 use glam::{DVec2, DVec3};
 
 /// Registry entry.
@@ -51,7 +52,7 @@ struct CookTorrance {
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     let alpha = params.number("alpha");
     Ok(Box::new(CookTorrance {
-        distribution: Beckmann::new([alpha, alpha]),
+        distribution: Beckmann::isotropic(alpha),
         alpha,
         fresnel: Fresnel::Schlick { f0: params.number("f0"), f90: params.number("f90") },
     }))
@@ -70,14 +71,14 @@ impl Brdf for CookTorrance {
     }
 
     fn sample(&self, wo: DVec3, u: DVec2) -> Option<Sample> {
-        let wm = self.distribution.sample(wo, u);
+        let wm = self.distribution.sample_visible(wo, u);
         let wi = frame::reflect(wo, wm);
         (wi.z > 0.0).then(|| Sample { wi, pdf: self.pdf(wo, wi) })
     }
 
     fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
         match frame::half_vector(wo, wi) {
-            Some(h) if frame::both_above(wo, wi) => self.distribution.pdf(wo, h.wh) / (4.0 * h.cos_d),
+            Some(h) if frame::both_above(wo, wi) => self.distribution.d_visible(wo, h.wh) / (4.0 * h.cos_d),
             _ => 0.0,
         }
     }

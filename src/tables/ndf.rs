@@ -5,7 +5,8 @@ use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::Param;
-use crate::terms::{beckmann, ggx};
+use crate::terms::smith::Ndf as _;
+use crate::terms::{beckmann::Beckmann, ggx::Ggx};
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -65,9 +66,9 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
 
 /// D of the named distribution at a cosine.
 #[must_use]
-pub fn d(beckmann_d: bool, mu_m: f64, alpha: f64) -> f64 {
+pub fn d(beckmann: bool, mu_m: f64, alpha: f64) -> f64 {
     let wm = DVec3::new(((1.0 - mu_m) * (1.0 + mu_m)).max(0.0).sqrt(), 0.0, mu_m);
-    if beckmann_d { beckmann::d(wm, alpha, alpha) } else { ggx::d(wm, alpha, alpha) }
+    if beckmann { Beckmann::isotropic(alpha).d(wm) } else { Ggx::isotropic(alpha).d(wm) }
 }
 
 impl Baker for Ndf {

@@ -1,53 +1,12 @@
-//! GGX normals with Smith masking.
+//! GGX: the kernel over batches of nodes, and the one-dimensional reduction of its white albedo.
 
-use super::{Distribution, Masking, reduction};
+use super::{Distribution, Ggx, Masking, isotropic, reduction};
 use crate::integrate::{BATCH, Estimate, Nodes};
-use crate::terms::ggx;
-use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 
-/// GGX (Trowbridge-Reitz) with widths along both tangents.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ggx {
-    alpha: [f64; 2],
-}
-
-impl Ggx {
-    /// From both widths.
-    #[must_use]
-    pub fn new(alpha: [f64; 2]) -> Ggx {
-        Ggx { alpha }
-    }
-}
-
 impl Distribution for Ggx {
-    fn d(&self, wm: DVec3) -> f64 {
-        ggx::d(wm, self.alpha[0], self.alpha[1])
-    }
-
-    fn lambda(&self, w: DVec3) -> f64 {
-        ggx::lambda(w, self.alpha[0], self.alpha[1])
-    }
-
-    fn visibility(&self, wo: DVec3, wi: DVec3, masking: Masking) -> f64 {
-        let [x, y] = self.alpha;
-        match masking {
-            Masking::Correlated => ggx::visibility_correlated(wo, wi, x, y),
-            Masking::Separable => ggx::visibility_separable(wo, wi, x, y),
-        }
-    }
-
-    fn sample(&self, wo: DVec3, u: DVec2) -> DVec3 {
-        ggx::sample_visible(wo, self.alpha[0], self.alpha[1], u)
-    }
-
-    fn pdf(&self, wo: DVec3, wm: DVec3) -> f64 {
-        ggx::visible_density(wo, wm, self.alpha[0], self.alpha[1])
-    }
-
     fn alpha(&self) -> Option<f64> {
-        let [x, y] = self.alpha;
-        ((x - y).abs() == 0.0).then_some(x)
+        isotropic([self.alpha_x(), self.alpha_y()])
     }
 
     /// A plain loop over slices with + - * / sqrt only, so that the compiler can vectorise it without changing a bit.
@@ -57,7 +16,7 @@ impl Distribution for Ggx {
     /// with s = sqrt(mu^2 + a^2 (1 - mu^2)).
     fn dv_nodes(&self, nodes: &Nodes, masking: Masking, out: &mut [f64; BATCH]) {
         let n = nodes.len;
-        let a2 = self.alpha[0] * self.alpha[0];
+        let a2 = self.alpha_x() * self.alpha_x();
         let mu_o = nodes.mu_o;
         let s_o = smith_root(mu_o, a2);
         let scale = a2 / PI;

@@ -8,13 +8,14 @@ mod fresnel;
 mod ggx;
 mod reduction;
 
-pub use beckmann::Beckmann;
+pub use crate::terms::beckmann::Beckmann;
+pub use crate::terms::ggx::Ggx;
 pub use fresnel::Fresnel;
-pub use ggx::Ggx;
 
 use super::{Brdf, Param, ParamError, Params, Preset, Sample};
 use crate::integrate::{BATCH, Chart, Estimate, Nodes};
 use crate::math::frame;
+use crate::terms::smith::Ndf;
 use glam::{DVec2, DVec3};
 use std::fmt::Debug;
 
@@ -27,38 +28,16 @@ pub enum Masking {
     Separable,
 }
 
-/// A distribution of microfacet normals with its Smith masking.
-pub trait Distribution: Debug + Send + Sync {
-    /// D(wm), 1/sr.
-    fn d(&self, wm: DVec3) -> f64;
-
-    /// Smith's Lambda of a direction above the horizon.
-    fn lambda(&self, w: DVec3) -> f64;
-
-    /// `G2 / (4 mu_o mu_i)` for two directions above the horizon.
-    fn visibility(&self, wo: DVec3, wi: DVec3, masking: Masking) -> f64 {
-        let (o, i) = (self.lambda(wo), self.lambda(wi));
-        let g2 = match masking {
-            Masking::Correlated => 1.0 / (1.0 + o + i),
-            Masking::Separable => 1.0 / ((1.0 + o) * (1.0 + i)),
-        };
-        g2 / (4.0 * wo.z * wi.z)
-    }
-
-    /// Draws a microfacet normal seen from `wo`.
-    fn sample(&self, wo: DVec3, u: DVec2) -> DVec3;
-
-    /// Density of [`Distribution::sample`], per solid angle of wm.
-    fn pdf(&self, wo: DVec3, wm: DVec3) -> f64;
-
-    /// The width, if it is the same along both tangents.
+/// What a model adds to a distribution of normals: how to integrate it, and a kernel over batches.
+pub trait Distribution: Ndf {
+    /// The width, if it is the same along both tangents; 0 is the mirror.
     fn alpha(&self) -> Option<f64>;
 
     /// `D V` at a batch of nodes of an isotropic distribution.
     fn dv_nodes(&self, nodes: &Nodes, masking: Masking, out: &mut [f64; BATCH]) {
         let wo = nodes.wo();
         for (i, o) in out[..nodes.len].iter_mut().enumerate() {
-            *o = self.d(nodes.wh(i)) * self.visibility(wo, nodes.wi(i), masking);
+            *o = self.d(nodes.wh(i)) * masking.visibility(self, wo, nodes.wi(i));
         }
     }
 
@@ -68,11 +47,29 @@ pub trait Distribution: Debug + Send + Sync {
     }
 }
 
+impl Masking {
+    /// `G2 / (4 mu_o mu_i)` of a distribution.
+    pub fn visibility<N: Ndf + ?Sized>(self, ndf: &N, wo: DVec3, wi: DVec3) -> f64 {
+        match self {
+            Masking::Correlated => ndf.visibility(wo, wi),
+            Masking::Separable => ndf.visibility_separable(wo, wi),
+        }
+    }
+}
+
+/// Both widths, as a model holds them. A width of 0 is the mirror, which has no density.
+#[must_use]
+pub(super) fn isotropic(alpha: [f64; 2]) -> Option<f64> {
+    ((alpha[0] - alpha[1]).abs() == 0.0).then_some(alpha[0])
+}
+
 /// A microfacet reflection.
 #[derive(Debug)]
 pub struct Microfacet<D: Distribution> {
     /// Normals and masking.
     pub distribution: D,
+    /// True if the widths are 0: a mirror, without a density.
+    pub flat: bool,
     /// How the masking is combined.
     pub masking: Masking,
     /// The Fresnel factor.
@@ -81,24 +78,24 @@ pub struct Microfacet<D: Distribution> {
 
 impl<D: Distribution> Brdf for Microfacet<D> {
     fn eval(&self, wo: DVec3, wi: DVec3) -> f64 {
-        if !frame::both_above(wo, wi) || self.mirror(wo.z).is_some() {
+        if self.flat || !frame::both_above(wo, wi) {
             return 0.0;
         }
         let Some(h) = frame::half_vector(wo, wi) else { return 0.0 };
         self.fresnel.at(h.cos_d)
             * self.distribution.d(h.wh)
-            * self.distribution.visibility(wo, wi, self.masking)
+            * self.masking.visibility(&self.distribution, wo, wi)
     }
 
     fn sample(&self, wo: DVec3, u: DVec2) -> Option<Sample> {
-        let wm = self.distribution.sample(wo, u);
+        let wm = self.distribution.sample_visible(wo, u);
         let wi = frame::reflect(wo, wm);
         (wi.z > 0.0).then(|| Sample { wi, pdf: self.pdf(wo, wi) })
     }
 
     fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
         match frame::half_vector(wo, wi) {
-            Some(h) if frame::both_above(wo, wi) => self.distribution.pdf(wo, h.wh) / (4.0 * h.cos_d),
+            Some(h) if frame::both_above(wo, wi) => self.distribution.d_visible(wo, h.wh) / (4.0 * h.cos_d),
             _ => 0.0,
         }
     }
@@ -113,8 +110,7 @@ impl<D: Distribution> Brdf for Microfacet<D> {
     }
 
     fn mirror(&self, mu_o: f64) -> Option<f64> {
-        let flat = self.distribution.alpha().is_some_and(|a| a <= 0.0);
-        flat.then(|| self.fresnel.at(mu_o))
+        self.flat.then(|| self.fresnel.at(mu_o))
     }
 
     fn reduced_albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
@@ -214,11 +210,13 @@ pub fn alphas(model: &'static str, params: &Params) -> Result<[f64; 2], ParamErr
 pub fn build<D: Distribution + 'static>(
     model: &'static str,
     params: &Params,
-    distribution: fn([f64; 2]) -> D,
+    distribution: fn(f64, f64) -> D,
     fresnel: Fresnel,
 ) -> Result<Box<dyn Brdf>, ParamError> {
+    let [x, y] = alphas(model, params)?;
     Ok(Box::new(Microfacet {
-        distribution: distribution(alphas(model, params)?),
+        distribution: distribution(x, y),
+        flat: x <= 0.0,
         masking: masking(params),
         fresnel,
     }))
