@@ -5,6 +5,8 @@
 
 #[path = "terms/fresnel.rs"]
 mod fresnel;
+#[path = "terms/kelemen.rs"]
+mod kelemen;
 #[path = "terms/microfacet.rs"]
 mod microfacet;
 #[path = "terms/schlick.rs"]

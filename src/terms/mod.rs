@@ -3,5 +3,6 @@
 pub mod beckmann;
 pub mod fresnel;
 pub mod ggx;
+pub mod kelemen;
 pub mod schlick;
 pub mod smith;
