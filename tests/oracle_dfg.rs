@@ -35,7 +35,7 @@ fn check(name: &str, layout: &str, params: &str, axes: &[Axis], channels: [usize
             dishonest * 100 <= texels,
             "{name} {layout} {tolerance:e}: {dishonest} of {texels} dishonest"
         );
-        if std::env::var("X").is_err() {}
+        assert!(ratio <= 10.0, "{name} {layout} {tolerance:e}: an error is {ratio} times its estimate");
     }
 }
 

@@ -11,6 +11,8 @@ pub enum Chart {
     HalfVector {
         /// Width of the peak of D.
         alpha: f64,
+        /// D vanishes beyond `tan(theta) = reach * alpha`; infinite for a power-law tail.
+        reach: f64,
     },
     /// Polar round the normal in `wi`; see [`hemisphere`].
     Hemisphere,
@@ -20,21 +22,25 @@ impl Chart {
     /// Calls `visit` with batches of nodes at a refinement level (2 is coarse, 16 is full f64 accuracy).
     pub fn visit(&self, mu_o: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
         match *self {
-            Chart::HalfVector { alpha } => half_vector::visit(mu_o, alpha, level, visit),
+            Chart::HalfVector { alpha, reach } => half_vector::visit(mu_o, alpha, reach, level, visit),
             Chart::Hemisphere => hemisphere::visit(mu_o, level, visit),
         }
     }
 
-    /// How much smaller than the difference of two successive levels the error of the finer one is taken to be.
+    /// How much smaller than the difference of two successive levels the error of the finer one is taken to be, for
+    /// the step to ladder level `j`.
     ///
-    /// In the half-vector chart the error falls by at least 12 from one level of the ladder to the next (measured,
-    /// `tests/quadrature.rs`); a third of that gain is claimed.
+    /// Measured over 6000 pairs of mu and alpha in [1e-5, 1] (`cargo long`, `tests/quadrature.rs`): with these gains
+    /// the error is below its estimate for 99.9 % of GGX and 99 % of Beckmann pairs at every level. A Gaussian peak
+    /// converges later and then faster than a power law, so its first levels get a gain below 1.
     #[must_use]
-    pub fn gain(&self) -> f64 {
-        match self {
-            Chart::HalfVector { .. } => 1.0,
-            Chart::Hemisphere => 1.0,
-        }
+    pub fn gain(&self, j: usize) -> f64 {
+        let table = match self {
+            Chart::HalfVector { reach, .. } if reach.is_finite() => [0.3, 0.3, 0.3, 2.0],
+            Chart::HalfVector { .. } => [1.0, 1.2, 1.4, 2.5],
+            Chart::Hemisphere => [1.0; 4],
+        };
+        table[j.clamp(1, table.len()) - 1]
     }
 
     /// The rule in words, for metadata.

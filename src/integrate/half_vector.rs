@@ -54,8 +54,11 @@ impl Row {
 }
 
 /// Calls `visit` with batches of nodes that cover the hemisphere for one view cosine.
-pub fn visit(mu_o: f64, alpha: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
+///
+/// `reach`: D vanishes beyond `tan(t) = reach * alpha` (6.5 for Beckmann, infinite for GGX); no node is spent there.
+pub fn visit(mu_o: f64, alpha: f64, reach: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
     let alpha = alpha.clamp(ALPHA_RANGE[0], ALPHA_RANGE[1]);
+    let end = half_tangent(reach * alpha);
     let mut nodes = Nodes::new(mu_o);
     let (s, mu) = (nodes.sin_o, mu_o);
     let azimuth_scale = (mu / (s.max(1e-9) * FRAC_PI_2)).clamp(1e-9, 1e3);
@@ -63,7 +66,7 @@ pub fn visit(mu_o: f64, alpha: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
         let azimuth = Graded::new(azimuth_scale, order, level);
         // Gradings are shared by the rows of a side; the row at phi = 0 (or pi/2) is the most demanding one.
         let hardest = Row::new(if front { 1.0 } else { 0.0 }, s, mu.max(1e-12));
-        let peak = Graded::new(0.5 * alpha / hardest.quarter, PEAK, level);
+        let peak = Graded::new(0.5 * alpha / hardest.quarter.min(end), PEAK, level);
         let near = (mu.min(3.0 * alpha) / (2.0 * hardest.r)).clamp(1e-9, 1.0);
         let horizon = Graded::new(0.5 * near / hardest.quarter, HORIZON, level);
         for j in 0..azimuth.len {
@@ -72,27 +75,37 @@ pub fn visit(mu_o: f64, alpha: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
             // 2 for the mirror half of the azimuth.
             let width = 2.0 * FRAC_PI_2 * azimuth.weight[j];
             nodes.panel = if front { 0 } else { 2 };
-            fill(&mut nodes, &row, &peak, width, false);
+            fill(&mut nodes, &row, &peak, width, [0.0, row.quarter.min(end)], false);
             visit(&nodes);
-            nodes.panel += 1;
-            fill(&mut nodes, &row, &horizon, width, true);
-            visit(&nodes);
+            // distance from the horizon at which D ends; beyond the half way point nothing is left
+            let near_end = ((row.half - end) / (1.0 + row.half * end)).max(0.0);
+            if near_end < row.quarter {
+                nodes.panel += 1;
+                fill(&mut nodes, &row, &horizon, width, [near_end, row.quarter], true);
+                visit(&nodes);
+            }
         }
     }
 }
 
+/// `tan(t / 2)` from `tan(t)`; 1 at infinity.
+fn half_tangent(tan: f64) -> f64 {
+    if tan.is_finite() { tan / (1.0 + (1.0 + tan * tan).sqrt()) } else { 1.0 }
+}
+
 /// Nodes of one row and panel. `y` runs over the tangent of the half angle measured from the graded end.
-fn fill(nodes: &mut Nodes, row: &Row, graded: &Graded, width: f64, from_horizon: bool) {
-    let (half, quarter, mu) = (row.half, row.quarter, nodes.mu_o);
+fn fill(nodes: &mut Nodes, row: &Row, graded: &Graded, width: f64, span: [f64; 2], from_horizon: bool) {
+    let (half, mu) = (row.half, nodes.mu_o);
+    let length = span[1] - span[0];
     let len = graded.len.min(BATCH);
     nodes.len = len;
     nodes.cos_phi[..len].fill(row.cos_phi);
     for i in 0..len {
-        let y = quarter * graded.node[i];
+        let y = span[0] + length * graded.node[i];
         let other = (half - y) / (1.0 + half * y);
         // t = tan(theta / 2), u = tan((theta_max - theta) / 2)
         let (t, u) = if from_horizon { (other, y) } else { (y, other) };
-        let d_theta = 2.0 * quarter * graded.weight[i] / (1.0 + y * y);
+        let d_theta = 2.0 * length * graded.weight[i] / (1.0 + y * y);
         let sec_t = 1.0 / (1.0 + t * t);
         let sec_u = 1.0 / (1.0 + u * u);
         let cos = (1.0 - t) * (1.0 + t) * sec_t;

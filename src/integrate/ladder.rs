@@ -4,7 +4,7 @@
 //! a property of the chart: where the error falls by a factor g from level to level,
 //! `|I_j - I| <= |I_j - I_(j-1)| / (g - 1)`, and `gain` is kept well below the smallest g - 1 measured. The estimates
 //! of the panels are added in magnitude, so that errors of opposite sign do not hide each other.
-//! A floor for rounding is added: 2^-50 of the sum of magnitudes.
+//! A floor for rounding is added: 2^-47 of the sum of magnitudes.
 
 use super::chart::Chart;
 use super::nodes::{MAX_PANELS, Nodes};
@@ -47,17 +47,18 @@ impl Estimate {
     }
 }
 
-/// Rounding floor relative to the magnitude summed.
-pub const ROUNDING: f64 = 1.0 / (1u64 << 50) as f64;
+/// Rounding floor relative to the magnitude summed: a few hundred additions.
+pub const ROUNDING: f64 = 1.0 / (1u64 << 47) as f64;
 
-/// First level for a tolerance: the one whose successor is expected to confirm it.
+/// First level for a tolerance: the one that its successor is expected to confirm at the median texel.
 #[must_use]
 pub fn first_level(tolerance: f64) -> usize {
     match tolerance {
-        t if t >= 1e-5 => 0,
-        t if t >= 1e-7 => 1,
-        t if t >= 1e-9 => 2,
-        _ => 3,
+        t if t >= 5e-3 => 0,
+        t if t >= 1e-5 => 1,
+        t if t >= 1e-7 => 2,
+        t if t >= 1e-10 => 3,
+        _ => 4,
     }
 }
 
@@ -83,9 +84,9 @@ pub fn integrate(
     let start = first_level(tolerance);
     let mut coarse = sums_at(LEVELS[start]);
     let mut error = [0.0; MAX_CHANNELS];
-    for &level in &LEVELS[start + 1..] {
+    for (j, &level) in LEVELS.iter().enumerate().skip(start + 1) {
         let fine = sums_at(level);
-        error = differences(&fine, &coarse, channels, chart.gain());
+        error = differences(&fine, &coarse, channels, chart.gain(j));
         coarse = fine;
         // NaN compares false and so never counts as done.
         if error[..channels].iter().all(|e| *e <= tolerance) {
@@ -107,16 +108,22 @@ fn total(panels: &Panels) -> Sums {
     sums
 }
 
-/// For each channel the sum over panels of the absolute differences, over the gain, plus the rounding floor.
+/// For each channel the sum over panels of the absolute differences, with a tenth of that of all channels (so that
+/// one channel that agrees by chance does not pass), over the gain, plus the rounding floor.
 fn differences(fine: &Panels, coarse: &Panels, channels: usize, gain: f64) -> Sums {
+    let mut difference = [0.0; MAX_CHANNELS];
     let mut error = [0.0; MAX_CHANNELS];
-    for (c, e) in error.iter_mut().enumerate().take(channels) {
-        let (mut difference, mut magnitude) = (0.0, 0.0);
+    for c in 0..channels {
+        let mut magnitude = 0.0;
         for (f, g) in fine.iter().zip(coarse) {
-            difference += (f[c] - g[c]).abs();
+            difference[c] += (f[c] - g[c]).abs();
             magnitude += f[c].abs();
         }
-        *e = difference / gain + magnitude * ROUNDING;
+        error[c] = magnitude * ROUNDING;
+    }
+    let shared = 0.1 * difference.iter().sum::<f64>();
+    for (e, d) in error.iter_mut().zip(&difference).take(channels) {
+        *e += (d + shared) / gain;
     }
     error
 }

@@ -6,4 +6,9 @@ impl Distribution for Beckmann {
     fn alpha(&self) -> Option<f64> {
         isotropic([self.alpha_x(), self.alpha_y()])
     }
+
+    /// exp(-6.5^2) = 5e-19: below the rounding of any sum.
+    fn reach(&self) -> f64 {
+        6.5
+    }
 }

@@ -33,6 +33,11 @@ pub trait Distribution: Ndf {
     /// The width, if it is the same along both tangents; 0 is the mirror.
     fn alpha(&self) -> Option<f64>;
 
+    /// D vanishes in f64 beyond `tan(theta) = reach * alpha`; infinite for a power-law tail.
+    fn reach(&self) -> f64 {
+        f64::INFINITY
+    }
+
     /// `D V` at a batch of nodes of an isotropic distribution.
     fn dv_nodes(&self, nodes: &Nodes, masking: Masking, out: &mut [f64; BATCH]) {
         let wo = nodes.wo();
@@ -101,7 +106,8 @@ impl<D: Distribution> Brdf for Microfacet<D> {
     }
 
     fn chart(&self) -> Option<Chart> {
-        self.distribution.alpha().map(|alpha| Chart::HalfVector { alpha })
+        let reach = self.distribution.reach();
+        self.distribution.alpha().map(|alpha| Chart::HalfVector { alpha, reach })
     }
 
     fn eval_nodes(&self, nodes: &Nodes, out: &mut [f64; BATCH]) {
