@@ -24,16 +24,22 @@ macro_rules! cites {
 cites! {
     /// Burley, the Disney principled model and its distributions.
     BURLEY_2012 = "Burley2012", "Burley: Physically-Based Shading at Disney, SIGGRAPH course", 2012, "https://blog.selfshadow.com/publications/s2012-shading-course/";
+    /// Burley, Owen scrambling by hashing.
+    BURLEY_2020 = "Burley2020", "Burley: Practical Hash-based Owen Scrambling, JCGT 9(4)", 2020, "https://jcgt.org/published/0009/04/01/";
     /// Cook and Torrance, the first microfacet model of graphics.
     COOK_TORRANCE_1982 = "CookTorrance1982", "Cook, Torrance: A Reflectance Model for Computer Graphics, ACM TOG 1(1)", 1982, "https://doi.org/10.1145/357290.357293";
     /// d'Eon and Luebke, the skin chapter of GPU Gems 3.
     DEON_LUEBKE_2007 = "DEonLuebke2007", "d'Eon, Luebke: Advanced Techniques for Realistic Real-Time Skin Rendering, GPU Gems 3 ch. 14", 2007, "https://developer.nvidia.com/gpugems/gpugems3/part-iii-rendering/chapter-14-advanced-techniques-realistic-real-time-skin";
+    /// Dekker, products without rounding error.
+    DEKKER_1971 = "Dekker1971", "Dekker: A Floating-Point Technique for Extending the Available Precision, Numerische Mathematik 18", 1971, "https://doi.org/10.1007/BF01397083";
     /// The NIST library of special functions.
     DLMF = "DLMF", "Olver and others (eds.): NIST Digital Library of Mathematical Functions", 2010, "https://dlmf.nist.gov/";
     /// Duntley, average reflectance of interfaces in diffuse light.
     DUNTLEY_1942 = "Duntley1942", "Duntley: The Optical Properties of Diffusing Materials, JOSA 32(2)", 1942, "https://doi.org/10.1364/JOSA.32.000061";
     /// Dupuy and Benyoub, visible normals of GGX as a spherical cap.
     DUPUY_BENYOUB_2023 = "DupuyBenyoub2023", "Dupuy, Benyoub: Sampling Visible GGX Normals with Spherical Caps, CGF 42(8)", 2023, "https://doi.org/10.1111/cgf.14867";
+    /// Hammersley, the finite point set.
+    HAMMERSLEY_1960 = "Hammersley1960", "Hammersley: Monte Carlo Methods for Solving Multivariable Problems, Annals NYAS 86(3)", 1960, "https://doi.org/10.1111/j.1749-6632.1960.tb42846.x";
     /// Heitz, the review of masking-shadowing functions.
     HEITZ_2014 = "Heitz2014", "Heitz: Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs, JCGT 3(2)", 2014, "https://jcgt.org/published/0003/02/03/";
     /// Heitz, sampling of GGX visible normals.
@@ -46,10 +52,14 @@ cites! {
     KARIS_2013 = "Karis2013", "Karis: Real Shading in Unreal Engine 4, SIGGRAPH course", 2013, "https://blog.selfshadow.com/publications/s2013-shading-course/";
     /// Kelemen and Szirmay-Kalos, the coupled matte and specular model.
     KELEMEN_2001 = "Kelemen2001", "Kelemen, Szirmay-Kalos: A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling, Eurographics short papers", 2001, "https://doi.org/10.2312/egs.20011031";
+    /// Knuth, sums without rounding error.
+    KNUTH_1969 = "Knuth1969", "Knuth: The Art of Computer Programming, volume 2, Seminumerical Algorithms", 1969, "https://www-cs-faculty.stanford.edu/~knuth/taocp.html";
     /// Kulla and Conty, energy compensation in production.
     KULLA_CONTY_2017 = "KullaConty2017", "Kulla, Conty: Revisiting Physically Based Shading at Imageworks, SIGGRAPH course", 2017, "https://blog.selfshadow.com/publications/s2017-shading-course/";
     /// Kutz and others, the F82 tint of metals.
     KUTZ_2021 = "Kutz2021", "Kutz, Hasan, Edmondson: Novel Aspects of the Adobe Standard Material, technical report", 2021, "https://experienceleague.adobe.com/en/docs/substance-3d/general-knowledge/asm/asm-technical-documentation";
+    /// Laine and Karras, the hash that is a nested permutation.
+    LAINE_KARRAS_2011 = "LaineKarras2011", "Laine, Karras: Stratified Sampling for Stochastic Transparency, CGF 30(4)", 2011, "https://doi.org/10.1111/j.1467-8659.2011.01978.x";
     /// Lambert's Photometria.
     LAMBERT_1760 = "Lambert1760", "Lambert: Photometria", 1760, "https://archive.org/details/lambertsphotome00lambgoog";
     /// Born and Wolf, the textbook of optics.
@@ -58,6 +68,8 @@ cites! {
     NEUMAIER_1974 = "Neumaier1974", "Neumaier: Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen, ZAMM 54", 1974, "https://doi.org/10.1002/zamm.19740540106";
     /// Schlick, the approximation of the Fresnel factor.
     SCHLICK_1994 = "Schlick1994", "Schlick: An Inexpensive BRDF Model for Physically-based Rendering, CGF 13(3)", 1994, "https://doi.org/10.1111/1467-8659.1330233";
+    /// Vegdahl, better constants for the Laine-Karras hash.
+    VEGDAHL_2021 = "Vegdahl2021", "Vegdahl: Building a Better LK Hash", 2021, "https://psychopath.io/post/2021_01_30_building_a_better_lk_hash";
     /// Walter and others, rough dielectrics and GGX.
     WALTER_2007 = "Walter2007", "Walter, Marschner, Li, Torrance: Microfacet Models for Refraction through Rough Surfaces, EGSR", 2007, "https://doi.org/10.2312/EGWR/EGSR07/195-206";
 }

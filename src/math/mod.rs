@@ -1,5 +1,6 @@
 //! Frames, special functions and sums; f64 throughout, transcendental functions from `libm` only.
 
+pub mod double;
 pub mod frame;
 pub mod nearest;
 pub mod special;

@@ -2,7 +2,8 @@
 //! independent scramblings. It shares no node, no chart and no reduction with the baker.
 
 use super::{Case, Law, Outcome, seeds};
-use crate::integrate::sobol;
+use crate::integrate::sobol::{ReplicateMean, replicate_mean};
+use crate::math::frame;
 use crate::models::Brdf;
 use crate::tables::integral::Functional;
 use crate::tables::{place, sweep::Sweep};
@@ -24,53 +25,33 @@ const POINTS: u32 = 512;
 /// Texels that are checked.
 const TEXELS: usize = 12;
 
-/// A mean with its standard error.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sampled {
-    /// Mean over all replicates.
-    pub mean: f64,
-    /// Standard error of the mean, from the spread of the replicates.
-    pub standard_error: f64,
-}
-
-/// Estimates `int f g mu_i dwi` by the model's sampler.
+/// Estimates `int f g mu_i dwi` for several functionals g by the model's sampler, with standard errors.
 #[must_use]
-pub fn estimate(
+pub fn estimate<const N: usize>(
     model: &dyn Brdf,
     mu_o: f64,
-    functional: Functional,
-    seed: u32,
+    functionals: [Functional; N],
+    seed: u64,
     replicates: u32,
     points: u32,
-) -> Sampled {
-    let wo = DVec3::new(((1.0 - mu_o) * (1.0 + mu_o)).max(0.0).sqrt(), 0.0, mu_o);
-    let (mut sum, mut squares) = (0.0, 0.0);
-    for r in 0..replicates {
-        let mut inner = 0.0;
-        for i in 0..points {
-            let u = sobol::point(i, seed.wrapping_add(r));
-            inner += weight(model, wo, DVec2::from_array(u), functional);
-        }
-        let mean = inner / f64::from(points);
-        sum += mean;
-        squares += mean * mean;
-    }
-    let n = f64::from(replicates);
-    let mean = sum / n;
-    let variance = (squares / n - mean * mean).max(0.0) / (n - 1.0).max(1.0);
-    Sampled { mean, standard_error: variance.sqrt() }
+) -> [ReplicateMean; N] {
+    let wo = frame::from_mu(mu_o);
+    replicate_mean(seed, replicates, points, |u| {
+        let (weight, cos_d) = weight(model, wo, u);
+        functionals.map(|g| weight * g.at(cos_d))
+    })
 }
 
-fn weight(model: &dyn Brdf, wo: DVec3, u: DVec2, functional: Functional) -> f64 {
+/// `f mu_i / pdf` of one draw, and `wo . wh`.
+fn weight(model: &dyn Brdf, wo: DVec3, u: DVec2) -> (f64, f64) {
     match model.sample(wo, u) {
         Some(s) if s.pdf > 0.0 => {
             let v = (0.5 * (1.0 + wo.dot(s.wi))).max(0.0).sqrt();
-            model.eval(wo, s.wi) * s.wi.z * functional.at(v) / s.pdf
+            (model.eval(wo, s.wi) * s.wi.z / s.pdf, v)
         }
-        _ => 0.0,
+        _ => (0.0, 1.0),
     }
 }
-
 /// Which functional a channel holds, if it is one.
 fn functional(channel: &str) -> Option<Functional> {
     match channel {
@@ -95,8 +76,7 @@ fn check(case: &Case<'_>) -> Outcome {
         }
         for (c, channel) in case.table.channels.iter().enumerate() {
             let Some(g) = functional(&channel.id) else { continue };
-            let seed = 0x51ed_u32.wrapping_mul(u32::try_from(i).unwrap_or(0) + 1);
-            let s = estimate(&*model, mu, g, seed, REPLICATES, POINTS);
+            let [s] = estimate(&*model, mu, [g], 0x51ed + i as u64, REPLICATES, POINTS);
             let k = texel * case.table.channels.len() + c;
             let (v, e) = (case.table.values[k], case.table.errors[k]);
             outcome.tighten(6.0 * s.standard_error + e + 1e-6 - (v - s.mean).abs(), || {
