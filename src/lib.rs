@@ -13,7 +13,7 @@
 //! | 3 | `models` | one file a reflectance model, and their registry |
 //! | 4 | `tables` | one file a bakeable table, their registry, and the one driver loop |
 //! | 5 | `verify` | one file a law; findings; `Verified` |
-//! | 6 | `encode` | one file a container; readers |
+//! | 6 | [`encode`] | one file a container; readers |
 //! | 6 | `report` | findings and provenance as text and JSON |
 //! | 7 | [`scene`] | what a glTF file needs |
 //! | 7 | `recipe` | preset files to a resolved plan |
@@ -21,6 +21,7 @@
 //! | 9 | `cli` | one file a verb (feature `cli`) |
 
 pub mod cite;
+pub mod encode;
 pub mod grid;
 pub mod integrate;
 pub mod math;

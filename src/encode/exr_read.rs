@@ -1,0 +1,199 @@
+//! Reads OpenEXR: every channel of every flat part, largest resolution level.
+//!
+//! The blocks are put into the picture here and not by the `exr` crate's own collector: that one trusts the offset
+//! table, and a table that names one block twice and another never gives a picture with zeros in it and no error.
+
+use super::read::{Claim, Image, MAX_SAMPLES, Plane, ReadError, Sample};
+use crate::grid::provenance::ATTRIBUTE;
+use ::exr::block::UncompressedBlock;
+use ::exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock};
+use ::exr::block::reader::ChunksReader;
+use ::exr::error::{Error, Result as ExrResult};
+use ::exr::meta::MetaData;
+use ::exr::meta::attribute::{AttributeValue, Compression, SampleType, Text};
+use ::exr::meta::header::Header;
+use ::exr::prelude::f16;
+use std::collections::BTreeSet;
+use std::io::Cursor;
+
+const FORMAT: &str = "exr";
+
+/// Reads a file. The crate (1.74) panics on some damaged B44 blocks where overflow checks are on, so a panic is caught
+/// and told as an error; the message of the panic hook, if the program has one, is still printed.
+pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
+    std::panic::catch_unwind(|| decode(bytes))
+        .unwrap_or_else(|_| Err(fault("the data are damaged (the decoder gave up)".to_owned())))
+}
+
+fn decode(bytes: &[u8]) -> Result<Image, ReadError> {
+    let reader = ::exr::block::read(Cursor::new(bytes), false).map_err(library)?;
+    let headers = reader.headers();
+    let (width, height) = size(headers)?;
+    let provenance = headers.iter().find_map(claim);
+    let mut picture = Picture::new(headers)?;
+    let mut chunks = reader
+        .filter_chunks(false, |_, tile, _| tile.level_index.0 == 0 && tile.level_index.1 == 0)
+        .map_err(library)?;
+    while let Some(chunk) = chunks.read_next_chunk() {
+        chunk.and_then(|c| picture.insert(chunks.meta_data(), c)).map_err(library)?;
+    }
+    if picture.pixels_left > 0 {
+        return Err(fault(format!("{} pixels are in no block of the file", picture.pixels_left)));
+    }
+    Ok(Image { format: FORMAT, width, height, channels: picture.planes, provenance })
+}
+
+fn library(e: Error) -> ReadError {
+    ReadError::Library { format: FORMAT, source: Box::new(e) }
+}
+
+fn fault(fault: String) -> ReadError {
+    ReadError::Fault { format: FORMAT, fault }
+}
+
+/// The one size of all parts, within the limit.
+fn size(headers: &[Header]) -> Result<(usize, usize), ReadError> {
+    let Some(first) = headers.first() else { return Err(fault("the file has no part".to_owned())) };
+    let (width, height) = (first.layer_size.0, first.layer_size.1);
+    let mut samples = 0usize;
+    for h in headers {
+        if (h.layer_size.0, h.layer_size.1) != (width, height) {
+            let (w, h) = (h.layer_size.0, h.layer_size.1);
+            return Err(fault(format!("parts of different sizes ({width} x {height}, {w} x {h})")));
+        }
+        let part = width.checked_mul(height).and_then(|n| n.checked_mul(h.channels.list.len()));
+        samples = part.and_then(|n| n.checked_add(samples)).unwrap_or(usize::MAX);
+    }
+    if samples > MAX_SAMPLES {
+        return Err(ReadError::Samples { format: FORMAT, width, height });
+    }
+    Ok((width, height))
+}
+
+fn utf8(text: &Text) -> String {
+    String::from_utf8_lossy(text.as_slice()).into_owned()
+}
+
+fn claim(header: &Header) -> Option<Claim> {
+    let key = Text::from_slice_unchecked(ATTRIBUTE.as_bytes());
+    let own = header.own_attributes.other.get(&key);
+    match own.or_else(|| header.shared_attributes.other.get(&key)) {
+        Some(AttributeValue::Text(text)) => Some(Claim::parse(utf8(text))),
+        _ => None,
+    }
+}
+
+/// The planes of all parts while blocks come in.
+struct Picture {
+    planes: Vec<Plane>,
+    /// Index of the first plane of each part.
+    first: Vec<usize>,
+    /// Part, x, y of the blocks that are in.
+    seen: BTreeSet<(usize, usize, usize)>,
+    pixels_left: usize,
+    width: usize,
+}
+
+impl Picture {
+    fn new(headers: &[Header]) -> Result<Picture, ReadError> {
+        let mut planes = Vec::<Plane>::new();
+        let mut first = Vec::new();
+        let (mut pixels_left, mut width) = (0, 0);
+        for header in headers {
+            first.push(planes.len());
+            width = header.layer_size.0;
+            let area = width * header.layer_size.1;
+            pixels_left += area;
+            let part = header.own_attributes.layer_name.as_ref().filter(|_| headers.len() > 1);
+            for channel in &header.channels.list {
+                let name = utf8(&channel.name);
+                let name = part.map_or(name.clone(), |p| format!("{}.{name}", utf8(p)));
+                if planes.iter().any(|p| p.name == name) {
+                    return Err(fault(format!("two channels are named `{name}`")));
+                }
+                let sample = match channel.sample_type {
+                    SampleType::F16 => Sample::Half,
+                    SampleType::F32 => Sample::Float,
+                    SampleType::U32 => Sample::Uint32,
+                };
+                planes.push(Plane { name, sample, range: [0.0, 1.0], values: vec![0.0; area] });
+            }
+        }
+        Ok(Picture { planes, first, seen: BTreeSet::new(), pixels_left, width })
+    }
+
+    fn insert(&mut self, meta: &MetaData, chunk: Chunk) -> ExrResult<()> {
+        let layer = chunk.layer_index;
+        let header = meta.headers.get(layer).ok_or_else(|| invalid("a block of no part"))?;
+        guard(header, &chunk)?;
+        let block = UncompressedBlock::decompress_chunk(chunk, meta, false)?;
+        let (at, size) = (block.index.pixel_position, block.index.pixel_size);
+        if !self.seen.insert((layer, at.0, at.1)) {
+            return Err(invalid("a block is there twice"));
+        }
+        self.pixels_left =
+            self.pixels_left.checked_sub(size.0 * size.1).ok_or_else(|| invalid("blocks overlap"))?;
+        let mut bytes = block.data.as_slice();
+        for y in at.1..at.1 + size.1 {
+            let row = y * self.width + at.0;
+            for plane in self.planes.iter_mut().skip(self.first[layer]).take(header.channels.list.len()) {
+                let width = if plane.sample == Sample::Half { 2 } else { 4 };
+                let line = bytes.split_at_checked(size.0 * width);
+                let slots = plane.values.get_mut(row..row + size.0);
+                let (Some((line, rest)), Some(slots)) = (line, slots) else {
+                    return Err(invalid("a block of the wrong size"));
+                };
+                fill(slots, line, plane.sample);
+                bytes = rest;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn invalid(what: &'static str) -> Error {
+    Error::Invalid(what.into())
+}
+
+/// Checks the counters of a DWA block, which the crate takes at their word: a forged one makes it ask for terabytes, and
+/// that ends the process. No counter of a sound block exceeds 64 per byte (8 x 8 blocks of a picture one pixel wide).
+fn guard(header: &Header, chunk: &Chunk) -> ExrResult<()> {
+    let (CompressedBlock::ScanLine(CompressedScanLineBlock { compressed_pixels_le: bytes, .. })
+    | CompressedBlock::Tile(CompressedTileBlock { compressed_pixels_le: bytes, .. })) = &chunk.compressed_block
+    else {
+        return Ok(());
+    };
+    if !matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_)) {
+        return Ok(());
+    }
+    let block = header.max_block_pixel_size();
+    let pixels = block.0.min(header.layer_size.0).saturating_mul(block.1.min(header.layer_size.1));
+    let limit = (pixels.saturating_mul(header.channels.bytes_per_pixel) as u64).saturating_mul(64).min(1 << 31);
+    let counters = bytes.chunks_exact(8).take(11).filter_map(|b| b.try_into().ok()).map(u64::from_le_bytes);
+    if counters.max().is_some_and(|n| n > limit) {
+        return Err(invalid("a DWA block that claims to be larger than its pixels"));
+    }
+    Ok(())
+}
+
+/// Decodes a line of samples; the crate hands them over in the byte order of the machine.
+fn fill(slots: &mut [f64], line: &[u8], sample: Sample) {
+    let word = |b: &[u8]| [b[0], b[1], b[2], b[3]];
+    match sample {
+        Sample::Half => {
+            for (slot, b) in slots.iter_mut().zip(line.chunks_exact(2)) {
+                *slot = f16::from_ne_bytes([b[0], b[1]]).to_f64();
+            }
+        }
+        Sample::Float => {
+            for (slot, b) in slots.iter_mut().zip(line.chunks_exact(4)) {
+                *slot = f64::from(f32::from_ne_bytes(word(b)));
+            }
+        }
+        _ => {
+            for (slot, b) in slots.iter_mut().zip(line.chunks_exact(4)) {
+                *slot = f64::from(u32::from_ne_bytes(word(b)));
+            }
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! Tables to files and back: storages (bits of a number), containers (one file each), readers, comparison.
+//!
+//! A table is first rounded by [`quantise_table`]; an [`Encoder`] then only moves the rounded numbers into bytes, in
+//! memory, and refuses a number that it would have to change. [`atomic::write_all`] puts finished files on disk.
+//!
+//! # Picture layout
+//! Axis 0 runs along x, axis 1 along y with index 0 in the top row. A third and fourth axis stack their slices below
+//! each other: texel `(i, j, k)` is at `x = i, y = j + k len1`. A table with one axis is one row.
+//!
+//! # Channels
+//! EXR channels carry the ids of the table (`dfg.scale`); EXR sorts them by name, so readers look them up by name. PNG
+//! has no names: see [`png`] for the layouts.
+//!
+//! # A new container
+//! One file, one `pub mod` line, one line in [`ENCODERS`].
+
+pub mod atomic;
+pub mod diff;
+pub mod diff_files;
+pub mod diff_json;
+pub mod exr;
+mod exr_read;
+pub mod png;
+mod png_read;
+pub mod read;
+pub mod storage;
+
+pub use diff::{ImageDiff, Tolerance};
+pub use read::{Image, ReadError};
+pub use storage::{Quantised, RangeFault, Storage, quantise_table};
+
+use crate::grid::{Channel, Grid};
+use std::fmt::Debug;
+
+/// A file format that holds a table.
+pub trait Encoder: Debug + Send + Sync {
+    /// Id in recipes: `exr`.
+    fn id(&self) -> &'static str;
+    /// File name extension, without the dot.
+    fn extension(&self) -> &'static str;
+    /// What it can store.
+    fn storages(&self) -> &'static [Storage];
+    /// Makes the bytes of the file. The same input gives the same bytes.
+    ///
+    /// # Errors
+    /// [`EncodeError`] says what the format cannot hold.
+    fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError>;
+}
+
+/// Every container.
+pub static ENCODERS: &[&dyn Encoder] = &[&exr::Exr, &png::Png];
+
+/// Looks a container up by its id.
+#[must_use]
+pub fn encoder(id: &str) -> Option<&'static dyn Encoder> {
+    ENCODERS.iter().copied().find(|e| e.id() == id)
+}
+
+/// What goes into a file.
+#[derive(Debug, Clone, Copy)]
+pub struct EncodeInput<'a> {
+    /// Where the texels are.
+    pub grid: &'a Grid,
+    /// What they hold.
+    pub channels: &'a [Channel],
+    /// Values as rounded by [`quantise_table`], `[texel][channel]`.
+    pub values: &'a [f64],
+    /// How they are stored.
+    pub storage: Storage,
+    /// The provenance as JSON text.
+    pub provenance_json: &'a str,
+}
+
+/// Why a table cannot be put into a container.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum EncodeError {
+    /// The container does not have this storage.
+    #[error("{format} cannot store {storage}; it can store {allowed}")]
+    Storage {
+        /// Container id.
+        format: &'static str,
+        /// Storage id.
+        storage: &'static str,
+        /// What it can store.
+        allowed: String,
+    },
+    /// No channels, or more than the container holds.
+    #[error("{format} cannot hold {count} channels; it holds 1 to {limit}")]
+    Channels {
+        /// Container id.
+        format: &'static str,
+        /// Number of channels.
+        count: usize,
+        /// Most that it holds.
+        limit: usize,
+    },
+    /// A channel id that cannot be a channel name, or that is there twice.
+    #[error("channel id `{id}`: {fault}")]
+    Name {
+        /// The id.
+        id: String,
+        /// What is wrong.
+        fault: &'static str,
+    },
+    /// The number of values is not that of the texels and channels.
+    #[error("{got} values for {texels} texels of {channels} channels")]
+    Count {
+        /// Number of values.
+        got: usize,
+        /// Number of texels.
+        texels: usize,
+        /// Number of channels.
+        channels: usize,
+    },
+    /// More rows or columns than the container can count.
+    #[error("{format} cannot hold {width} x {height} pixels; each side is at most {limit}")]
+    Size {
+        /// Container id.
+        format: &'static str,
+        /// Width in pixels.
+        width: usize,
+        /// Height in pixels, slices stacked.
+        height: usize,
+        /// Largest side.
+        limit: usize,
+    },
+    /// A value that is not one of the storage: it was not rounded beforehand.
+    #[error("texel {texel}, channel {channel}: {value} is not a {storage} number; round the table first")]
+    NotQuantised {
+        /// Texel number.
+        texel: usize,
+        /// Channel id.
+        channel: String,
+        /// The value.
+        value: f64,
+        /// Storage id.
+        storage: &'static str,
+    },
+    /// The library that writes the container failed.
+    #[error("{format}: {source}")]
+    Library {
+        /// Container id.
+        format: &'static str,
+        /// Its own message.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+}
+
+impl EncodeInput<'_> {
+    /// Width and height of the picture, slices stacked; see the module.
+    #[must_use]
+    pub fn size(&self) -> [usize; 2] {
+        let [x, y, z] = self.grid.extent();
+        [x, y * z]
+    }
+
+    /// Checks everything that does not depend on how the container lays out its bytes.
+    fn check(&self, encoder: &dyn Encoder, most: usize) -> Result<(), EncodeError> {
+        let format = encoder.id();
+        let n = self.channels.len();
+        if !encoder.storages().contains(&self.storage) {
+            let allowed = encoder.storages().iter().map(|s| s.id()).collect::<Vec<_>>().join(", ");
+            return Err(EncodeError::Storage { format, storage: self.storage.id(), allowed });
+        }
+        if n == 0 || n > most {
+            return Err(EncodeError::Channels { format, count: n, limit: most });
+        }
+        for (i, channel) in self.channels.iter().enumerate() {
+            let id = &channel.id;
+            let twice = self.channels[..i].iter().any(|c| c.id == *id);
+            let fault = match () {
+                () if id.is_empty() => "is empty",
+                () if id.len() > 255 => "is longer than 255 bytes",
+                () if id.contains('\0') => "contains a zero byte",
+                () if twice => "is there twice",
+                () => continue,
+            };
+            return Err(EncodeError::Name { id: id.clone(), fault });
+        }
+        let texels = self.grid.len();
+        if self.values.len() != texels * n {
+            return Err(EncodeError::Count { got: self.values.len(), texels, channels: n });
+        }
+        self.check_values()
+    }
+
+    /// Every value must be its own rounded form, bit for bit.
+    fn check_values(&self) -> Result<(), EncodeError> {
+        let n = self.channels.len();
+        for (i, &value) in self.values.iter().enumerate() {
+            let channel = &self.channels[i % n];
+            let same = |v: f64| v.to_bits() == value.to_bits();
+            if !self.storage.quantise(value, channel.range).is_ok_and(same) {
+                return Err(EncodeError::NotQuantised {
+                    texel: i / n,
+                    channel: channel.id.clone(),
+                    value,
+                    storage: self.storage.id(),
+                });
+            }
+        }
+        Ok(())
+    }
+}

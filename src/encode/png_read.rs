@@ -1,0 +1,119 @@
+//! Reads PNG: 1 to 16 bits, grey, colour, alpha, palette. Samples are codes as they stand: no gamma, no profile.
+
+use super::png::samples_per_pixel;
+use super::read::{Claim, Image, MAX_SAMPLES, Plane, ReadError, Sample};
+use crate::grid::Channel;
+use crate::grid::provenance::ATTRIBUTE;
+use image::codecs::png::PngDecoder;
+use image::{ImageDecoder, Limits};
+use std::io::Cursor;
+
+const FORMAT: &str = "png";
+
+/// Most bytes that the decoder may take for rows, text and profiles.
+const MAX_ALLOC: u64 = 1 << 30;
+
+/// Longest provenance that is unpacked.
+const MAX_TEXT: usize = 1 << 24;
+
+pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
+    let (width, height, sample, mut planes) = pixels(bytes)?;
+    let provenance = text(bytes).map(Claim::parse);
+    if let Some(Claim::Known(p)) = &provenance {
+        planes = named(planes, &p.channels);
+    }
+    for plane in &mut planes {
+        for v in &mut plane.values {
+            *v = sample.decode(*v, plane.range);
+        }
+    }
+    Ok(Image { format: FORMAT, width, height, channels: planes, provenance })
+}
+
+fn library(e: impl std::error::Error + Send + Sync + 'static) -> ReadError {
+    ReadError::Library { format: FORMAT, source: Box::new(e) }
+}
+
+/// Size, sample type and codes of each channel.
+fn pixels(bytes: &[u8]) -> Result<(usize, usize, Sample, Vec<Plane>), ReadError> {
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(MAX_ALLOC);
+    let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(library)?;
+    let (w, h) = decoder.dimensions();
+    let (width, height) = (w as usize, h as usize);
+    let colour = decoder.color_type();
+    let n = usize::from(colour.channel_count());
+    let samples = width.checked_mul(height).and_then(|a| a.checked_mul(n)).unwrap_or(usize::MAX);
+    if samples > MAX_SAMPLES {
+        return Err(ReadError::Samples { format: FORMAT, width, height });
+    }
+    let size = usize::from(colour.bytes_per_pixel()) / n;
+    let mut data = vec![0; samples * size];
+    decoder.read_image(&mut data).map_err(library)?;
+    let sample = if size == 1 { Sample::Unorm8 } else { Sample::Unorm16 };
+    let names: &[&str] = match n {
+        1 => &["Y"],
+        2 => &["Y", "A"],
+        3 => &["R", "G", "B"],
+        _ => &["R", "G", "B", "A"],
+    };
+    let plane = |(c, name): (usize, &&str)| Plane {
+        name: (*name).to_owned(),
+        sample,
+        range: [0.0, 1.0],
+        values: data.chunks_exact(size).skip(c).step_by(n).map(code).collect(),
+    };
+    Ok((width, height, sample, names.iter().enumerate().map(plane).collect()))
+}
+
+fn code(sample: &[u8]) -> f64 {
+    match sample {
+        [a, b] => f64::from(u16::from_ne_bytes([*a, *b])),
+        _ => sample.first().map_or(0.0, |&a| f64::from(a)),
+    }
+}
+
+/// Gives the channels the ids and ranges of the provenance, if their number fits. The empty blue of a table of two
+/// channels is dropped; a blue that is not empty was not written by this program and stays.
+fn named(mut planes: Vec<Plane>, channels: &[Channel]) -> Vec<Plane> {
+    if channels.is_empty() || planes.len() != samples_per_pixel(channels.len()) {
+        return planes;
+    }
+    for (plane, channel) in planes.iter_mut().zip(channels) {
+        let [lo, hi] = channel.range;
+        plane.name.clone_from(&channel.id);
+        if lo < hi && (hi - lo).is_finite() {
+            plane.range = [lo, hi];
+        }
+    }
+    if planes.len() > channels.len() && planes[channels.len()].values.iter().all(|v| v.abs() == 0.0) {
+        planes.truncate(channels.len());
+    }
+    planes
+}
+
+/// The text of the `brdfbake` chunk (iTXt, tEXt or zTXt), wherever it stands. A file that is damaged behind its pixels
+/// has none.
+fn text(bytes: &[u8]) -> Option<String> {
+    let limits = png::Limits { bytes: MAX_TEXT * 4 };
+    let mut reader = png::Decoder::new_with_limits(Cursor::new(bytes), limits).read_info().ok()?;
+    found(reader.info()).or_else(|| {
+        reader.finish().ok()?;
+        found(reader.info())
+    })
+}
+
+fn found(info: &png::Info<'_>) -> Option<String> {
+    let utf8 = info.utf8_text.iter().find(|t| t.keyword == ATTRIBUTE).and_then(|t| {
+        let mut t = t.clone();
+        t.decompress_text_with_limit(MAX_TEXT).ok()?;
+        t.get_text().ok()
+    });
+    let plain = || info.uncompressed_latin1_text.iter().find(|t| t.keyword == ATTRIBUTE).map(|t| t.text.clone());
+    let packed = || {
+        let mut t = info.compressed_latin1_text.iter().find(|t| t.keyword == ATTRIBUTE)?.clone();
+        t.decompress_text_with_limit(MAX_TEXT).ok()?;
+        t.get_text().ok()
+    };
+    utf8.or_else(plain).or_else(packed)
+}

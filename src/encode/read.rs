@@ -1,0 +1,300 @@
+//! Reads any EXR or PNG, of this program or another, into f64 channels.
+//!
+//! Files are not trusted. Sizes are checked before memory is asked for ([`MAX_BYTES`], [`MAX_SAMPLES`]); a damaged file
+//! is an error, never a panic and never a picture with holes in it.
+
+use super::storage::{Coding, Storage};
+use crate::grid::Provenance;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// Most bytes of a file.
+pub const MAX_BYTES: u64 = 1 << 31;
+
+/// Most samples (pixels times channels, all parts together) of a file: 2 GiB as f64.
+pub const MAX_SAMPLES: usize = 1 << 28;
+
+/// A picture as f64 channels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Image {
+    /// Container id: `exr` or `png`.
+    pub format: &'static str,
+    /// Width in pixels.
+    pub width: usize,
+    /// Height in pixels.
+    pub height: usize,
+    /// Channels in file order.
+    pub channels: Vec<Plane>,
+    /// What the file says of itself, if it says anything.
+    pub provenance: Option<Claim>,
+}
+
+/// One channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plane {
+    /// Name: as in the file, with the part before it in a file of several parts (`part.channel`). The samples of a PNG
+    /// are named `Y`, `A`, `R`, `G`, `B`, or by the provenance if the file holds one.
+    pub name: String,
+    /// How its samples are stored.
+    pub sample: Sample,
+    /// The range that unorm codes are spread over: [0, 1], or that of the provenance.
+    pub range: [f64; 2],
+    /// Values, rows from the top.
+    pub values: Vec<f64>,
+}
+
+/// What the `brdfbake` attribute of a file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Claim {
+    /// The provenance.
+    Known(Box<Provenance>),
+    /// A text that is not a provenance of this version.
+    Unknown {
+        /// The text.
+        text: String,
+        /// Why it was not understood.
+        fault: String,
+    },
+}
+
+/// How samples are stored in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Sample {
+    /// 16-bit float.
+    Half,
+    /// 32-bit float.
+    Float,
+    /// 32-bit integer (EXR), the number itself.
+    Uint32,
+    /// 8-bit code (PNG of 1 to 8 bits, palettes included).
+    Unorm8,
+    /// 16-bit code.
+    Unorm16,
+}
+
+impl Sample {
+    /// Id in reports.
+    #[must_use]
+    pub const fn id(self) -> &'static str {
+        match self {
+            Sample::Half => "half",
+            Sample::Float => "float",
+            Sample::Uint32 => "uint32",
+            Sample::Unorm8 => "unorm8",
+            Sample::Unorm16 => "unorm16",
+        }
+    }
+
+    const fn coding(self) -> Coding {
+        match self {
+            Sample::Half => Storage::Half.coding(),
+            Sample::Float => Storage::Float.coding(),
+            Sample::Unorm16 => Storage::Unorm16.coding(),
+            Sample::Unorm8 => Coding::Unorm { top: 255.0 },
+            Sample::Uint32 => Coding::Binary { digits: 1, least: 0, largest: 1.0 },
+        }
+    }
+
+    /// Distance of neighbouring stored numbers at `value`.
+    #[must_use]
+    pub fn ulp(self, value: f64, range: [f64; 2]) -> f64 {
+        self.coding().ulp(value, range)
+    }
+
+    /// The number that a code stands for; floats are their own code.
+    pub(super) fn decode(self, code: f64, range: [f64; 2]) -> f64 {
+        self.coding().decode(code, range)
+    }
+}
+
+/// Count, extremes and mean of a channel.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Statistics {
+    /// Finite values.
+    pub finite: usize,
+    /// NaNs.
+    pub nan: usize,
+    /// Infinities.
+    pub infinite: usize,
+    /// Least finite value; infinity if there is none.
+    pub min: f64,
+    /// Largest finite value; minus infinity if there is none.
+    pub max: f64,
+    /// Mean of the finite values; 0 if there are none.
+    pub mean: f64,
+}
+
+impl Plane {
+    /// Extremes and mean.
+    #[must_use]
+    pub fn statistics(&self) -> Statistics {
+        let mut s = Statistics {
+            finite: 0,
+            nan: 0,
+            infinite: 0,
+            min: f64::INFINITY,
+            max: f64::NEG_INFINITY,
+            mean: 0.0,
+        };
+        for &v in &self.values {
+            if v.is_finite() {
+                s.finite += 1;
+                s.min = s.min.min(v);
+                s.max = s.max.max(v);
+                // Running mean: a sum of floats near the end of f64 would overflow.
+                s.mean += (v - s.mean) / s.finite as f64;
+            } else if v.is_nan() {
+                s.nan += 1;
+            } else {
+                s.infinite += 1;
+            }
+        }
+        s
+    }
+}
+
+impl Claim {
+    pub(super) fn parse(text: String) -> Claim {
+        match serde_json::from_str(&text) {
+            Ok(known) => Claim::Known(Box::new(known)),
+            Err(e) => Claim::Unknown { text, fault: e.to_string() },
+        }
+    }
+}
+
+impl Image {
+    /// The provenance, if the file has one that is understood.
+    #[must_use]
+    pub fn known(&self) -> Option<&Provenance> {
+        match &self.provenance {
+            Some(Claim::Known(p)) => Some(p),
+            _ => None,
+        }
+    }
+
+    /// A channel by its name.
+    #[must_use]
+    pub fn channel(&self, name: &str) -> Option<&Plane> {
+        self.channels.iter().find(|c| c.name == name)
+    }
+
+    /// Where the provenance and the picture contradict each other, in words; empty if they agree.
+    #[must_use]
+    pub fn contradictions(&self) -> Vec<String> {
+        let Some(p) = self.known() else { return Vec::new() };
+        let mut found = Vec::new();
+        let len = |i: usize| p.axes.get(i).map_or(1, |a| a.axis.len);
+        let (width, height) = (len(0), len(1).saturating_mul(len(2)).saturating_mul(len(3)));
+        if (width, height) != (self.width, self.height) {
+            let (w, h) = (self.width, self.height);
+            found.push(format!("the metadata tells of {width} x {height} texels, the picture has {w} x {h}"));
+        }
+        for channel in p.channels.iter().filter(|c| self.channel(&c.id).is_none()) {
+            found.push(format!("the metadata tells of channel `{}`, the picture has none", channel.id));
+        }
+        for plane in self.channels.iter().filter(|c| p.channels.iter().all(|d| d.id != c.name)) {
+            found.push(format!("the picture has channel `{}`, the metadata does not name it", plane.name));
+        }
+        if let Some(e) = &p.encoding
+            && let Some(plane) = self.channels.iter().find(|c| c.sample.id() != e.storage)
+        {
+            let (name, sample) = (&plane.name, plane.sample.id());
+            found.push(format!("the metadata says {}, channel `{name}` is stored as {sample}", e.storage));
+        }
+        found
+    }
+}
+
+/// Why a file cannot be read as a picture.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// The file cannot be opened or read.
+    #[error("{path}: {source}")]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The system's message.
+        source: std::io::Error,
+    },
+    /// Larger than [`MAX_BYTES`].
+    #[error("the file has {bytes} bytes; at most {MAX_BYTES} are read")]
+    Bytes {
+        /// Size of the file.
+        bytes: u64,
+    },
+    /// The header tells of more than [`MAX_SAMPLES`].
+    #[error("{format}: the header tells of {width} x {height} pixels; at most 2^28 samples are read")]
+    Samples {
+        /// Container id.
+        format: &'static str,
+        /// Width in pixels.
+        width: usize,
+        /// Height in pixels.
+        height: usize,
+    },
+    /// Neither EXR nor PNG.
+    #[error("neither an EXR nor a PNG file (it begins with {0:02x?})")]
+    Unknown(
+        /// The first bytes.
+        Vec<u8>,
+    ),
+    /// The library that reads the container refused it: damaged, or of a kind that is not supported.
+    #[error("{format}: {source}")]
+    Library {
+        /// Container id.
+        format: &'static str,
+        /// Its own message.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+    /// A fault that this program found.
+    #[error("{format}: {fault}")]
+    Fault {
+        /// Container id.
+        format: &'static str,
+        /// What is wrong.
+        fault: String,
+    },
+}
+
+/// Reads a picture from memory; the first bytes tell the container.
+///
+/// # Errors
+/// [`ReadError`] for anything but a sound EXR or PNG within the limits.
+pub fn read_bytes(bytes: &[u8]) -> Result<Image, ReadError> {
+    if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
+        super::exr_read::read(bytes)
+    } else if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
+        super::png_read::read(bytes)
+    } else {
+        Err(ReadError::Unknown(bytes.iter().copied().take(8).collect()))
+    }
+}
+
+/// Reads a picture from a file.
+///
+/// # Errors
+/// As [`read_bytes`], and if the file cannot be read or is larger than [`MAX_BYTES`].
+pub fn read_file(path: &Path) -> Result<Image, ReadError> {
+    read_bytes(&load(path)?)
+}
+
+/// The bytes of a file, if there are not too many.
+///
+/// # Errors
+/// [`ReadError::Io`] and [`ReadError::Bytes`].
+pub fn load(path: &Path) -> Result<Vec<u8>, ReadError> {
+    use std::io::Read;
+    let io = |source| ReadError::Io { path: path.to_owned(), source };
+    let file = std::fs::File::open(path).map_err(io)?;
+    let told = file.metadata().map_err(io)?.len();
+    if told > MAX_BYTES {
+        return Err(ReadError::Bytes { bytes: told });
+    }
+    let mut bytes = Vec::new();
+    // A pipe tells no length: count while reading.
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(io)?;
+    let bytes_read = bytes.len() as u64;
+    if bytes_read > MAX_BYTES { Err(ReadError::Bytes { bytes: bytes_read }) } else { Ok(bytes) }
+}
