@@ -21,11 +21,16 @@
 //! | 9 | `cli` | one file a verb (feature `cli`) |
 
 pub mod cite;
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod encode;
 pub mod grid;
 pub mod integrate;
 pub mod math;
 pub mod models;
+pub mod pipeline;
+pub mod recipe;
+pub mod report;
 pub mod scene;
 pub mod tables;
 pub mod terms;

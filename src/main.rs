@@ -1,2 +1,5 @@
 //! The `brdfbake` command.
-fn main() {}
+
+fn main() -> std::process::ExitCode {
+    brdfbake::cli::main()
+}

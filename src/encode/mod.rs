@@ -75,6 +75,12 @@ pub struct EncodeInput<'a> {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum EncodeError {
+    /// No such container or storage.
+    #[error("no container and storage `{id}`")]
+    Unknown {
+        /// What was asked for.
+        id: String,
+    },
     /// The container does not have this storage.
     #[error("{format} cannot store {storage}; it can store {allowed}")]
     Storage {

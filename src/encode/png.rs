@@ -44,7 +44,8 @@ impl Encoder for Png {
         let (Ok(w), Ok(h)) = (u32::try_from(width), u32::try_from(height)) else {
             return Err(EncodeError::Size { format: self.id(), width, height, limit: 1 << 24 });
         };
-        let library = |e: ::png::EncodingError| EncodeError::Library { format: self.id(), source: Box::new(e) };
+        let library =
+            |e: ::png::EncodingError| EncodeError::Library { format: self.id(), source: Box::new(e) };
         let mut bytes = Vec::new();
         let mut encoder = ::png::Encoder::new(&mut bytes, w, h);
         encoder.set_color(match input.channels.len() {
@@ -65,7 +66,11 @@ impl Encoder for Png {
 }
 
 /// Big-endian samples, rows from the top.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code is an integer in 0 ..= 65535")]
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a code is an integer in 0 ..= 65535"
+)]
 fn pixels(input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
     let n = input.channels.len();
     let pad = samples_per_pixel(n) - n;

@@ -63,6 +63,10 @@ pub fn visit(mu_o: f64, alpha: f64, reach: f64, level: f64, visit: &mut dyn FnMu
     let (s, mu) = (nodes.sin_o, mu_o);
     let azimuth_scale = (mu / (s.max(1e-9) * FRAC_PI_2)).clamp(1e-9, 1e3);
     for (front, order) in [(true, AZIMUTH_FRONT), (false, AZIMUTH_BACK)] {
+        // at mu = 0 the far half of the azimuth sees no light: t_max is 0 there
+        if !front && mu <= 0.0 {
+            continue;
+        }
         let azimuth = Graded::new(azimuth_scale, order, level);
         // Gradings are shared by the rows of a side; the row at phi = 0 (or pi/2) is the most demanding one.
         let hardest = Row::new(if front { 1.0 } else { 0.0 }, s, mu.max(1e-12));

@@ -26,7 +26,7 @@ pub static INFO: TableInfo = TableInfo {
         Layout {
             id: "absolute",
             doc: "D in 1/sr; at alpha below 0.0023 its peak does not fit a half float",
-            channels: &[ChannelInfo { id: "ndf.d", meaning: "D(mu_m), 1/sr", range: [0.0, f64::INFINITY] }],
+            channels: &[ChannelInfo { id: "ndf.d", meaning: "D(mu_m), 1/sr", range: [0.0, 3.4e38] }],
         },
     ],
     model: ModelUse::None,
@@ -67,6 +67,8 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
 /// D of the named distribution at a cosine.
 #[must_use]
 pub fn d(beckmann: bool, mu_m: f64, alpha: f64) -> f64 {
+    // the terms give 0 at the horizon itself, where a facet has no area to show; a table holds the limit
+    let mu_m = mu_m.max(f64::MIN_POSITIVE);
     let wm = DVec3::new(((1.0 - mu_m) * (1.0 + mu_m)).max(0.0).sqrt(), 0.0, mu_m);
     if beckmann { Beckmann::isotropic(alpha).d(wm) } else { Ggx::isotropic(alpha).d(wm) }
 }

@@ -183,6 +183,17 @@ impl Request {
 }
 
 impl Spec {
+    /// Ids of the parameters that an axis sets: those it sweeps, and those that follow a swept one.
+    #[must_use]
+    pub fn swept(&self) -> Vec<&'static str> {
+        let mut ids: Vec<&'static str> = self.grid.axes().iter().map(|a| a.quantity.base_id()).collect();
+        if let Some((_, params)) = self.model.as_ref().filter(|_| ids.contains(&"alpha")) {
+            let follows = |id: &&str| (params.number(id) - params.number("alpha")).abs() == 0.0;
+            ids.extend(["alpha_x", "alpha_y"].iter().filter(|id| follows(id)));
+        }
+        ids
+    }
+
     /// Channels of the layout.
     #[must_use]
     pub fn channels(&self) -> Vec<Channel> {

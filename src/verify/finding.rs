@@ -58,9 +58,8 @@ impl Finding {
 #[must_use]
 pub fn subject(spec: &Spec) -> String {
     let Some((info, params)) = &spec.model else { return spec.kind.id.to_owned() };
-    let swept: Vec<&str> = spec.grid.axes().iter().map(|a| a.quantity.base_id()).collect();
     let fixed: Vec<String> = params
-        .to_json(&swept)
+        .to_json(&spec.swept())
         .iter()
         .map(|(k, v)| format!("{k} = {}", v.to_string().replace('"', "")))
         .collect();

@@ -2,7 +2,7 @@
 //! between the texels, over the whole domain and over its practical part.
 //!
 //! Points: the middles of all cells, and for centre axes the edges of the domain (where a reader clamps). Where
-//! that is more than `limit` points, every n-th one. Then the cells of the largest errors are searched on a finer
+//! that is more than a limit, every n-th one. Then the cells of the largest errors are searched on a finer
 //! grid of 5 x 5 points each, so that a corner does not slip through between two middles.
 
 use crate::grid::axis::count;
@@ -10,6 +10,7 @@ use crate::grid::layout::{MAX_AXES, Point};
 use crate::grid::provenance::{Reconstruction, Spread};
 use crate::grid::table::{Extreme, named};
 use crate::grid::{Grid, Texel, lookup};
+use crate::integrate::{MAX_CHANNELS, Sums};
 use crate::tables::Bound;
 use rayon::prelude::*;
 
@@ -18,53 +19,137 @@ pub const PRACTICAL_MU: f64 = 0.05;
 /// Least alpha of the practical domain: roughness 0.09.
 pub const PRACTICAL_ALPHA: f64 = 0.09 * 0.09;
 
-/// Cells that are searched more finely.
-const SEARCHED: usize = 12;
+/// Cells that are searched more finely, of the whole and of the practical domain each.
+const SEARCHED: usize = 8;
 
-struct Compared {
+/// Points between the texels with fresh integrals, made once and compared with every stored form of a table.
+#[derive(Debug)]
+pub struct Probe<'a> {
+    bound: &'a Bound,
+    tolerance: f64,
+    points: Vec<Fresh>,
+}
+
+#[derive(Debug, Clone)]
+struct Fresh {
     x: [f64; MAX_AXES],
     point: Point,
+    value: Sums,
+}
+
+struct Compared<'a> {
+    fresh: &'a Fresh,
     /// Largest error of the channels, its channel, and the sum over channels.
     largest: f64,
     channel: usize,
     sum: f64,
 }
 
-/// Measures the reconstruction of `stored` (quantised values of the table's grid).
-///
-/// Points where the integral itself fails are left out; the laws report those.
-#[must_use]
-pub fn measure(bound: &Bound, stored: &[f64], tolerance: f64, limit: usize) -> Reconstruction {
-    let grid = &bound.spec.grid;
-    let between: Vec<Vec<f64>> = (0..grid.axes().len()).map(|i| grid.between(i)).collect();
-    let total: usize = between.iter().map(Vec::len).product();
-    let step = total.div_ceil(limit.max(1));
-    let coordinates = |mut n: usize| {
-        let mut x = [0.0; MAX_AXES];
-        for (x, list) in x.iter_mut().zip(&between) {
-            *x = list[n % list.len()];
-            n /= list.len();
+impl<'a> Probe<'a> {
+    /// Integrates at the middles of the cells, at most about `limit` of them.
+    ///
+    /// Points where the integral itself fails are left out; the laws report those.
+    #[must_use]
+    pub fn new(bound: &'a Bound, tolerance: f64, limit: usize) -> Probe<'a> {
+        let grid = &bound.spec.grid;
+        let between: Vec<Vec<f64>> = (0..grid.axes().len()).map(|i| grid.between(i)).collect();
+        let total: usize = between.iter().map(Vec::len).product();
+        let step = total.div_ceil(limit.max(1));
+        let coordinates = |mut n: usize| {
+            let mut x = [0.0; MAX_AXES];
+            for (x, list) in x.iter_mut().zip(&between) {
+                *x = list[n % list.len()];
+                n /= list.len();
+            }
+            x
+        };
+        let chosen: Vec<[f64; MAX_AXES]> = (0..total).step_by(step).map(coordinates).collect();
+        let mut probe = Probe { bound, tolerance, points: Vec::new() };
+        probe.points = probe.integrate(&chosen);
+        probe
+    }
+
+    /// Compares `stored` (quantised values of the table's grid), read by the reference reader, with the integrals.
+    #[must_use]
+    pub fn measure(&self, stored: &[f64]) -> Reconstruction {
+        let grid = &self.bound.spec.grid;
+        let regular = self.compare_all(stored, &self.points);
+        let mut worst: Vec<&Compared<'_>> = regular.iter().collect();
+        // the sort is stable, so equal errors keep the order of the grid
+        worst.sort_by(|a, b| b.largest.total_cmp(&a.largest));
+        let practical = worst.iter().filter(|c| is_practical(grid, &c.fresh.point)).take(SEARCHED);
+        let cells: Vec<[f64; MAX_AXES]> =
+            worst.iter().take(SEARCHED).chain(practical).flat_map(|c| around(grid, &c.fresh.x)).collect();
+        let fine = self.integrate(&cells);
+        let searched = self.compare_all(stored, &fine);
+        let whole = self.spread(&regular, &searched, |_| true);
+        Reconstruction {
+            filter: filter(grid).to_owned(),
+            points: (regular.len() + searched.len()) as u64,
+            whole: whole.unwrap_or_else(nothing),
+            practical: has_practical(grid)
+                .then(|| self.spread(&regular, &searched, |p| is_practical(grid, p)))
+                .flatten(),
         }
-        x
-    };
-    let points: Vec<[f64; MAX_AXES]> = (0..total).step_by(step).map(coordinates).collect();
-    let mut compared = compare_all(bound, stored, tolerance, &points);
-    let coarse = compared.len();
-    let mut worst: Vec<usize> = (0..coarse).collect();
-    worst.sort_by(|&a, &b| compared[b].largest.total_cmp(&compared[a].largest).then(a.cmp(&b)));
-    let fine: Vec<[f64; MAX_AXES]> =
-        worst.iter().take(SEARCHED).flat_map(|&i| around(grid, &compared[i].x)).collect();
-    let searched = compare_all(bound, stored, tolerance, &fine);
-    // the mean is over the regular points only
-    let whole = spread(bound, &compared, &searched, |_| true);
-    let practical = spread(bound, &compared, &searched, |p| is_practical(grid, p));
-    let points = (compared.len() + searched.len()) as u64;
-    compared.clear();
-    Reconstruction {
-        filter: filter(grid).to_owned(),
-        points,
-        whole: whole.unwrap_or_else(nothing),
-        practical,
+    }
+
+    fn integrate(&self, points: &[[f64; MAX_AXES]]) -> Vec<Fresh> {
+        let fresh = |x: &[f64; MAX_AXES]| {
+            let point = self.bound.spec.grid.at_coordinates(x);
+            let estimate = self.bound.baker.texel(point.values(), self.tolerance).ok()?;
+            Some(Fresh { x: *x, point, value: estimate.value })
+        };
+        points.par_iter().filter_map(fresh).collect()
+    }
+
+    fn compare_all<'f>(&self, stored: &[f64], points: &'f [Fresh]) -> Vec<Compared<'f>> {
+        points.par_iter().map(|fresh| self.compare(stored, fresh)).collect()
+    }
+
+    fn compare<'f>(&self, stored: &[f64], fresh: &'f Fresh) -> Compared<'f> {
+        let channels = self.bound.spec.layout.channels.len();
+        let mut read = [0.0; MAX_CHANNELS];
+        lookup::read(&self.bound.spec.grid, stored, &fresh.point, &mut read[..channels]);
+        let mut result = Compared { fresh, largest: 0.0, channel: 0, sum: 0.0 };
+        for (c, (r, f)) in read[..channels].iter().zip(&fresh.value).enumerate() {
+            let error = (r - f).abs();
+            result.sum += error;
+            if error > result.largest {
+                result.largest = error;
+                result.channel = c;
+            }
+        }
+        result
+    }
+
+    /// The largest error of all points inside; the mean is over the regular ones only.
+    fn spread(
+        &self,
+        regular: &[Compared<'_>],
+        searched: &[Compared<'_>],
+        inside: impl Fn(&Point) -> bool,
+    ) -> Option<Spread> {
+        let channels = self.bound.spec.layout.channels;
+        let (mut sum, mut n) = (0.0, 0.0);
+        for c in regular.iter().filter(|c| inside(&c.fresh.point)) {
+            sum += c.sum;
+            n += count(channels.len());
+        }
+        let mut largest: Option<&Compared<'_>> = None;
+        for c in regular.iter().chain(searched).filter(|c| inside(&c.fresh.point)) {
+            if largest.is_none_or(|l| c.largest > l.largest) {
+                largest = Some(c);
+            }
+        }
+        let largest = largest?;
+        Some(Spread {
+            largest: Extreme {
+                value: largest.largest,
+                channel: channels[largest.channel].id.to_owned(),
+                at: named(&self.bound.spec.grid, &largest.fresh.point),
+            },
+            mean: if n > 0.0 { sum / n } else { 0.0 },
+        })
     }
 }
 
@@ -78,29 +163,6 @@ fn filter(grid: &Grid) -> &'static str {
         2 => "bilinear, clamped",
         _ => "multilinear, clamped",
     }
-}
-
-fn compare_all(bound: &Bound, stored: &[f64], tolerance: f64, points: &[[f64; MAX_AXES]]) -> Vec<Compared> {
-    points.par_iter().filter_map(|x| compare(bound, stored, tolerance, *x)).collect()
-}
-
-fn compare(bound: &Bound, stored: &[f64], tolerance: f64, x: [f64; MAX_AXES]) -> Option<Compared> {
-    let grid = &bound.spec.grid;
-    let channels = bound.spec.layout.channels.len();
-    let point = grid.at_coordinates(&x);
-    let fresh = bound.baker.texel(point.values(), tolerance).ok()?;
-    let mut read = [0.0; crate::integrate::MAX_CHANNELS];
-    lookup::read(grid, stored, &point, &mut read[..channels]);
-    let mut result = Compared { x, point, largest: 0.0, channel: 0, sum: 0.0 };
-    for (c, (r, f)) in read[..channels].iter().zip(&fresh.value).enumerate() {
-        let error = (r - f).abs();
-        result.sum += error;
-        if error > result.largest {
-            result.largest = error;
-            result.channel = c;
-        }
-    }
-    Some(result)
 }
 
 /// A 5 x 5 grid (5^n) over the cell round `x`.
@@ -120,42 +182,15 @@ fn around(grid: &Grid, x: &[f64; MAX_AXES]) -> Vec<[f64; MAX_AXES]> {
     points
 }
 
+/// Is there an axis that the practical domain cuts?
+fn has_practical(grid: &Grid) -> bool {
+    grid.axes().iter().any(|a| ["mu", "alpha"].contains(&a.quantity.base_id()))
+}
+
 fn is_practical(grid: &Grid, point: &Point) -> bool {
     grid.axes().iter().zip(point.values()).all(|(axis, &v)| match axis.quantity.base_id() {
         "mu" => v >= PRACTICAL_MU,
         "alpha" => v >= PRACTICAL_ALPHA,
         _ => true,
-    })
-}
-
-fn spread(
-    bound: &Bound,
-    regular: &[Compared],
-    searched: &[Compared],
-    inside: impl Fn(&Point) -> bool,
-) -> Option<Spread> {
-    let channels = bound.spec.layout.channels;
-    let (mut sum, mut n) = (0.0, 0.0);
-    let mut largest: Option<&Compared> = None;
-    for (i, c) in regular.iter().chain(searched).enumerate() {
-        if !inside(&c.point) {
-            continue;
-        }
-        if i < regular.len() {
-            sum += c.sum;
-            n += count(channels.len());
-        }
-        if largest.is_none_or(|l| c.largest > l.largest) {
-            largest = Some(c);
-        }
-    }
-    let largest = largest?;
-    Some(Spread {
-        largest: Extreme {
-            value: largest.largest,
-            channel: channels[largest.channel].id.to_owned(),
-            at: named(&bound.spec.grid, &largest.point),
-        },
-        mean: if n > 0.0 { sum / n } else { 0.0 },
     })
 }

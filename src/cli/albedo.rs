@@ -1,0 +1,107 @@
+//! `brdfbake albedo MODEL --param k=v --mu 0.1,0.5 --tolerance 1e-8`.
+
+use super::{Exit, Failure, output};
+use crate::models::{self, Params};
+use crate::tables::integral::{Functional, integrate};
+use serde_json::{Map, Value as Json};
+
+/// Arguments of `albedo`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Model id, or another of its names.
+    model: String,
+    /// A parameter, as key=value; may be given several times.
+    #[arg(short, long = "param", value_name = "KEY=VALUE")]
+    params: Vec<String>,
+    /// View cosines, separated by commas.
+    #[arg(long, value_name = "MU", value_delimiter = ',', default_value = "0.05,0.1,0.25,0.5,0.75,1")]
+    mu: Vec<f64>,
+    /// Absolute tolerance of E.
+    #[arg(short, long, default_value_t = 1e-8)]
+    tolerance: f64,
+    /// Use the model's chart even if it has a one-dimensional reduction.
+    #[arg(long)]
+    chart: bool,
+    /// Print one JSON object a line.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs it: exit code 4 if an estimate stays above the tolerance.
+///
+/// # Errors
+/// [`Failure`] for an unknown model, a bad parameter, or a model without an albedo.
+pub fn run(args: &Args) -> Result<Exit, Failure> {
+    if !(args.tolerance > 0.0 && args.tolerance.is_finite()) {
+        return Err(Failure::usage(format!("--tolerance {} must be a positive number", args.tolerance)));
+    }
+    let given = parse_params(&args.params)?;
+    let (info, model) = build(&args.model, &given)?;
+    let mut text = String::new();
+    let mut missed = false;
+    if !args.json {
+        text.push_str("mu\tE\terror\tevaluations\n");
+    }
+    for &mu in &args.mu {
+        if !(0.0..=1.0).contains(&mu) {
+            return Err(Failure::input(format!(
+                "mu = {mu} outside [0, 1]: it is the cosine of the view angle"
+            )));
+        }
+        // twice the same functional asks for the chart: reductions exist for a single one only
+        let functionals: &[Functional] =
+            if args.chart { &[Functional::One, Functional::One] } else { &[Functional::One] };
+        let e = integrate(&*model, info.id, mu, functionals, args.tolerance)
+            .map_err(|e| Failure::new(Exit::Unsupported, format!("{}: mu = {mu}: {e}", info.id)))?;
+        missed |= e.error[0] > args.tolerance;
+        if args.json {
+            let line = serde_json::json!({
+                "model": info.id, "mu": mu, "e": e.value[0], "error": e.error[0], "evaluations": e.evaluations,
+            });
+            text.push_str(&format!("{line}\n"));
+        } else {
+            text.push_str(&format!("{mu}\t{:.15}\t{:.1e}\t{}\n", e.value[0], e.error[0], e.evaluations));
+        }
+    }
+    output::data(&text);
+    if missed {
+        return Err(Failure::new(
+            Exit::Failed,
+            format!("an estimated error is above the tolerance {:e}; ask for a larger one", args.tolerance),
+        ));
+    }
+    Ok(Exit::Done)
+}
+
+/// `key=value` pairs as JSON: numbers where they parse as such, else words.
+pub(super) fn parse_params(params: &[String]) -> Result<Map<String, Json>, Failure> {
+    let mut map = Map::new();
+    for param in params {
+        let (key, value) = param.split_once('=').ok_or_else(|| {
+            Failure::usage(format!("--param {param}: expected KEY=VALUE, such as alpha=0.25"))
+        })?;
+        let json = value.parse::<f64>().map_or_else(|_| Json::from(value), Json::from);
+        map.insert(key.to_owned(), json);
+    }
+    Ok(map)
+}
+
+/// Builds a model by name.
+pub(super) fn build(
+    name: &str,
+    given: &Map<String, Json>,
+) -> Result<(&'static models::ModelInfo, Box<dyn models::Brdf>), Failure> {
+    let (info, implied) = models::find(name).ok_or_else(|| unknown_model(name))?;
+    let implied: Map<String, Json> = implied.iter().map(|(k, v)| ((*k).to_owned(), Json::from(*v))).collect();
+    let all = implied.iter().chain(given).map(|(k, v)| (k.as_str(), v));
+    let params = Params::resolve(info.id, info.params, all).map_err(Failure::input)?;
+    Ok((info, (info.build)(&params).map_err(Failure::input)?))
+}
+
+/// The message for a model that does not exist.
+pub(super) fn unknown_model(name: &str) -> Failure {
+    let ids = || models::MODELS.iter().map(|m| m.id);
+    let hint = crate::math::nearest::nearest(name, ids())
+        .map_or_else(String::new, |n| format!("; did you mean `{n}`?"));
+    Failure::input(format!("no model `{name}`; there is {}{hint}", ids().collect::<Vec<_>>().join(", ")))
+}

@@ -1,0 +1,95 @@
+//! `brdfbake bake`.
+
+use super::progress::{self, Format};
+use super::{Exit, Failure, output, scene};
+use crate::pipeline::{self, PipelineError, Settings};
+use crate::recipe::{self, LoadError, Plan};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// Arguments of `bake`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Recipe file (TOML), or the name of a preset; the preset `default` if neither this nor --scene is given.
+    recipe: Option<String>,
+    /// Bake only what the materials of this glTF file (.gltf, .glb) ask for.
+    #[arg(long, value_name = "FILE", conflicts_with = "recipe")]
+    scene: Option<PathBuf>,
+    /// Output folder.
+    #[arg(short, long, value_name = "DIR", default_value = "brdfbake-out")]
+    out: PathBuf,
+    /// Number of threads; all cores if not given. The bytes do not depend on it.
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    quiet: bool,
+    /// Text on stderr, or one JSON object a line on stdout.
+    #[arg(long, value_enum, default_value = "human")]
+    message_format: Format,
+    /// Print the plan and the file names, and bake nothing.
+    #[arg(long)]
+    dry_run: bool,
+}
+
+/// Runs it.
+///
+/// # Errors
+/// [`Failure`] with the exit code of the cause; the output folder is then as it was.
+pub fn run(args: &Args, cancel: &Arc<AtomicBool>) -> Result<Exit, Failure> {
+    let plan = match &args.scene {
+        Some(path) => match scene::plan(path, args.quiet, args.message_format)? {
+            Some(plan) => plan,
+            None => return Ok(Exit::Done),
+        },
+        None => plan(args.recipe.as_deref().unwrap_or("default"))?,
+    };
+    if args.dry_run {
+        output::data(&pipeline::outputs(&plan).join("\n"));
+        return Ok(Exit::Done);
+    }
+    let reporter = progress::reporter(args.message_format, args.quiet);
+    let settings = Settings { out: args.out.clone(), jobs: args.jobs.map(usize::from) };
+    match pipeline::run(&plan, &settings, cancel, &*reporter) {
+        Ok(_) => Ok(Exit::Done),
+        Err(error) => {
+            if let (PipelineError::Laws(findings), Format::Json) = (&error, args.message_format) {
+                for finding in findings {
+                    report_finding(finding);
+                }
+            }
+            Err(error.into())
+        }
+    }
+}
+
+fn report_finding(finding: &crate::verify::Finding) {
+    if let Ok(serde_json::Value::Object(fields)) = serde_json::to_value(finding) {
+        let mut line = serde_json::Map::new();
+        line.insert("reason".to_owned(), "finding".into());
+        line.extend(fields);
+        output::data(&serde_json::Value::Object(line).to_string());
+    }
+}
+
+/// The plan of a recipe file or of a preset.
+fn plan(name: &str) -> Result<Plan, Failure> {
+    let looks_like_a_file = name.contains(['/', '\\', '.']);
+    if !looks_like_a_file {
+        if let Some(preset) = recipe::PRESETS.iter().find(|p| p.id == name) {
+            return recipe::parse(preset.source, &format!("presets/{name}.toml")).map_err(Failure::input);
+        }
+        let ids: Vec<&str> = recipe::PRESETS.iter().map(|p| p.id).collect();
+        let hint = crate::math::nearest::nearest(name, ids.iter().copied())
+            .map_or_else(String::new, |n| format!("; did you mean `{n}`?"));
+        return Err(Failure::input(format!(
+            "no preset `{name}`; there is {}{hint} A recipe file is given by its path, such as ./{name}.toml",
+            ids.join(", ")
+        )));
+    }
+    recipe::load(std::path::Path::new(name)).map_err(|error| match error {
+        LoadError::Recipe(e) => Failure::input(e),
+        other => Failure::new(Exit::Io, other),
+    })
+}

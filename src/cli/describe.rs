@@ -1,0 +1,155 @@
+//! `brdfbake describe ID`: everything that the registries know of a model, table, preset, law or quantity.
+
+use super::{Exit, Failure, output};
+use crate::grid::Quantity;
+use crate::models::{self, Kind, ModelInfo, Param, Preset};
+use crate::recipe::PRESETS;
+use crate::tables::{self, ModelUse, TableInfo};
+use crate::verify;
+
+/// Arguments of `describe`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Id of a model, table, preset, law or quantity.
+    id: String,
+}
+
+/// Runs it.
+///
+/// # Errors
+/// [`Failure`] if nothing has this id.
+pub fn run(args: &Args) -> Result<Exit, Failure> {
+    let id = args.id.as_str();
+    let mut parts = Vec::new();
+    parts.extend(models::find(id).map(|(m, _)| model(m)));
+    parts.extend(tables::find(id).map(table));
+    parts.extend(
+        PRESETS.iter().find(|p| p.id == id).map(|p| format!("preset {}\n{}\n\n{}", p.id, p.doc, p.source)),
+    );
+    parts.extend(verify::find(id).map(law));
+    parts.extend(Quantity::find(id).map(quantity));
+    if parts.is_empty() {
+        let ids = || {
+            let models = models::MODELS.iter().map(|m| m.id);
+            let tables = tables::TABLES.iter().map(|t| t.id);
+            models.chain(tables).chain(PRESETS.iter().map(|p| p.id)).chain(verify::LAWS.iter().map(|l| l.id))
+        };
+        let hint = crate::math::nearest::nearest(id, ids())
+            .map_or_else(String::new, |n| format!("; did you mean `{n}`?"));
+        return Err(Failure::input(format!(
+            "nothing is called `{id}`{hint} `brdfbake list models` lists the models"
+        )));
+    }
+    output::data(&parts.join("\n"));
+    Ok(Exit::Done)
+}
+
+/// The page of a model.
+#[must_use]
+pub fn model(m: &ModelInfo) -> String {
+    let claims = [
+        (m.laws.reciprocal, "reciprocal"),
+        (m.laws.passive, "passive (E <= 1)"),
+        (m.laws.isotropic, "isotropic"),
+    ];
+    let yes: Vec<&str> = claims.iter().filter(|c| c.0).map(|c| c.1).collect();
+    let no: Vec<String> = claims.iter().filter(|c| !c.0).map(|c| format!("not {}", c.1)).collect();
+    let mut text = format!("model {}\n{}\n\n  {}\n\n", m.id, m.title, m.formula);
+    text.push_str(&params(m.params));
+    text.push_str(&format!(
+        "laws: {}\n",
+        yes.iter().map(|s| (*s).to_owned()).chain(no).collect::<Vec<_>>().join(", ")
+    ));
+    text.push_str(&format!("notes: {}\n", m.notes));
+    if !m.also.is_empty() {
+        let names: Vec<&str> = m.also.iter().map(|a| a.name).collect();
+        text.push_str(&format!("also called: {}\n", names.join(", ")));
+    }
+    text.push_str("known values:\n");
+    for k in m.known {
+        let set: Vec<String> = k.params.iter().map(|(a, b)| format!("{a} = {b}")).collect();
+        text.push_str(&format!("  {:?} at {}: {:.15} ({})\n", k.what, set.join(", "), k.value, k.source));
+    }
+    text.push_str(&sources(&m.source_lines()));
+    text
+}
+
+/// The page of a table kind.
+#[must_use]
+pub fn table(t: &TableInfo) -> String {
+    let mut text = format!("table {}\n{}\n\n  {}\n\nlayouts:\n", t.id, t.title, t.formula);
+    for layout in t.layouts {
+        text.push_str(&format!("  {}: {}\n", layout.id, layout.doc));
+        for c in layout.channels {
+            text.push_str(&format!("    {} in [{}, {}]: {}\n", c.id, c.range[0], c.range[1], c.meaning));
+        }
+    }
+    text.push_str(&match t.model {
+        ModelUse::None => "model: none\n".to_owned(),
+        ModelUse::Any(default) => format!("model: any, default {default}\n"),
+        ModelUse::Split(default) => {
+            let all: Vec<&str> = models::MODELS.iter().filter(|m| m.splits).map(|m| m.id).collect();
+            format!("model: one whose Fresnel factor splits off ({}), default {default}\n", all.join(", "))
+        }
+    });
+    if !t.coordinates.is_empty() {
+        text.push_str(&format!("needs axes for: {}\n", t.coordinates.join(", ")));
+    }
+    text.push_str("default axes:\n");
+    for axis in (t.axes)() {
+        text.push_str(&format!(
+            "  {} in [{}, {}], {} texels, {:?}, texture coordinate {}\n",
+            axis.quantity.id,
+            axis.domain[0],
+            axis.domain[1],
+            axis.len,
+            axis.texel,
+            axis.coordinate_formula()
+        ));
+    }
+    text.push_str(&params(t.params));
+    text.push_str(&format!("laws checked: {}\nnotes: {}\n", t.laws.join(", "), t.notes));
+    text.push_str(&sources(&models::source_lines(t.sources)));
+    text
+}
+
+fn law(l: &'static verify::Law) -> String {
+    format!("law {} (finding BB{:04})\n{}\nmargin: {}\n", l.id, l.code, l.statement, l.margin)
+}
+
+fn quantity(q: &'static Quantity) -> String {
+    let base = q.base.as_ref().map_or_else(String::new, |b| format!("\n{}", b.formula));
+    format!(
+        "quantity {}, symbol {}, unit {}\n{}; domain [{}, {}]{base}\n",
+        q.id, q.symbol, q.unit, q.meaning, q.domain[0], q.domain[1]
+    )
+}
+
+fn params(params: &[Param]) -> String {
+    if params.is_empty() {
+        return "parameters: none\n".to_owned();
+    }
+    let mut text = "parameters:\n".to_owned();
+    for p in params {
+        let range = match p.kind {
+            Kind::Number { min, max, preset } => {
+                let default = match preset {
+                    Preset::Value(v) => v.to_string(),
+                    Preset::Of(id) => id.to_owned(),
+                };
+                format!("[{min}, {max}], default {default}")
+            }
+            Kind::Choice(words) => format!("{}; default {}", words.join(" | "), words.first().unwrap_or(&"")),
+        };
+        text.push_str(&format!("  {} ({range}): {}\n", p.id, p.doc));
+    }
+    text
+}
+
+fn sources(lines: &[String]) -> String {
+    let mut text = "sources:\n".to_owned();
+    for line in lines {
+        text.push_str(&format!("  {line}\n"));
+    }
+    text
+}

@@ -1,0 +1,100 @@
+//! Exit codes, in one table.
+
+use crate::encode::atomic::WriteError;
+use crate::pipeline::PipelineError;
+use crate::tables::driver::BakeError;
+
+/// The table of exit codes, for `--help` and README.
+pub const TABLE: &str = "Exit codes:
+  0    done, or equal
+  1    internal error
+  2    usage
+  3    bad recipe or input
+  4    a law, a tolerance or a comparison failed
+  5    input or output failed
+  6    unsupported
+  130  interrupted";
+
+/// How the program ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Exit {
+    /// Done, or equal.
+    Done = 0,
+    /// A fault of the program.
+    Internal = 1,
+    /// Bad arguments.
+    Usage = 2,
+    /// A bad recipe or input file.
+    Input = 3,
+    /// A law, a tolerance or a comparison failed.
+    Failed = 4,
+    /// Reading or writing failed.
+    Io = 5,
+    /// Something that is not supported.
+    Unsupported = 6,
+    /// Interrupted by the user.
+    Interrupted = 130,
+}
+
+impl From<Exit> for std::process::ExitCode {
+    fn from(exit: Exit) -> Self {
+        std::process::ExitCode::from(exit as u8)
+    }
+}
+
+/// A message and an exit code.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Failure {
+    /// What to tell the user; may have several lines.
+    pub message: String,
+    /// The exit code.
+    pub exit: Exit,
+}
+
+impl Failure {
+    /// A failure with a message.
+    pub fn new(exit: Exit, message: impl std::fmt::Display) -> Failure {
+        Failure { message: message.to_string(), exit }
+    }
+
+    /// Bad arguments.
+    pub fn usage(message: impl std::fmt::Display) -> Failure {
+        Failure::new(Exit::Usage, message)
+    }
+
+    /// A bad input.
+    pub fn input(message: impl std::fmt::Display) -> Failure {
+        Failure::new(Exit::Input, message)
+    }
+
+    /// Reading or writing failed.
+    pub fn io(what: impl std::fmt::Display, error: &std::io::Error) -> Failure {
+        Failure::new(Exit::Io, format!("{what}: {error}"))
+    }
+}
+
+impl From<PipelineError> for Failure {
+    fn from(error: PipelineError) -> Failure {
+        let exit = match &error {
+            PipelineError::Bake { error: BakeError::Cancelled, .. }
+            | PipelineError::Write(WriteError::Cancelled) => Exit::Interrupted,
+            PipelineError::Bake { error: BakeError::Missed { .. }, .. }
+            | PipelineError::Laws(_)
+            | PipelineError::Range { .. } => Exit::Failed,
+            PipelineError::Bake { .. } => Exit::Input,
+            PipelineError::Encode { .. } => Exit::Unsupported,
+            PipelineError::Write(_) => Exit::Io,
+            _ => Exit::Internal,
+        };
+        let mut message = error.to_string();
+        if let PipelineError::Laws(findings) = &error {
+            for finding in findings {
+                message.push_str(&format!("\n  {finding}"));
+            }
+            message.push_str(
+                "\n  To bake it all the same, add `waive = [{ law = \"...\", reason = \"...\" }]` to the table; the file will say so.",
+            );
+        }
+        Failure { message, exit }
+    }
+}

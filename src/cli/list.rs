@@ -1,0 +1,80 @@
+//! `brdfbake list WHAT`: one line an entry, from the registries.
+
+use super::{Exit, Failure, output};
+use crate::encode::ENCODERS;
+use crate::grid::quantity::QUANTITIES;
+use crate::models::MODELS;
+use crate::recipe::PRESETS;
+use crate::tables::TABLES;
+use crate::verify::LAWS;
+
+/// What to list.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum What {
+    /// Reflectance models.
+    Models,
+    /// Table kinds.
+    Tables,
+    /// Recipes that come with the program.
+    Presets,
+    /// Containers and what they can store.
+    Formats,
+    /// Laws that are checked.
+    Laws,
+    /// Quantities that an axis can sweep.
+    Quantities,
+}
+
+/// Arguments of `list`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// What to list.
+    #[arg(value_enum)]
+    what: What,
+    /// Print a JSON array of objects.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs it.
+///
+/// # Errors
+/// None; the signature is that of every verb.
+pub fn run(args: &Args) -> Result<Exit, Failure> {
+    let rows = rows(args.what);
+    if args.json {
+        let json: Vec<_> =
+            rows.iter().map(|(id, text)| serde_json::json!({"id": id, "title": text})).collect();
+        output::data(&serde_json::Value::from(json).to_string());
+    } else {
+        let width = rows.iter().map(|(id, _)| id.len()).max().unwrap_or(0);
+        let lines: Vec<String> = rows.iter().map(|(id, text)| format!("{id:width$}  {text}")).collect();
+        output::data(&lines.join("\n"));
+    }
+    Ok(Exit::Done)
+}
+
+fn rows(what: What) -> Vec<(String, String)> {
+    let row = |id: &str, text: &str| (id.to_owned(), text.to_owned());
+    match what {
+        What::Models => MODELS.iter().map(|m| row(m.id, m.title)).collect(),
+        What::Tables => TABLES.iter().map(|t| row(t.id, t.title)).collect(),
+        What::Presets => PRESETS.iter().map(|p| row(p.id, p.doc)).collect(),
+        What::Formats => ENCODERS
+            .iter()
+            .map(|e| {
+                let storages: Vec<String> =
+                    e.storages().iter().map(|s| format!("{}:{}", e.id(), s.id())).collect();
+                (e.id().to_owned(), format!("*.{}: {}", e.extension(), storages.join(", ")))
+            })
+            .collect(),
+        What::Laws => LAWS.iter().map(|l| row(l.id, l.statement)).collect(),
+        What::Quantities => QUANTITIES
+            .iter()
+            .map(|q| {
+                let base = q.base.as_ref().map_or_else(String::new, |b| format!(" ({})", b.formula));
+                (q.id.to_owned(), format!("{}{base}", q.meaning))
+            })
+            .collect(),
+    }
+}

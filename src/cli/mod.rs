@@ -1,0 +1,78 @@
+//! The command: one file a verb, each with its arguments and `run`. Printing happens here and nowhere else.
+
+pub mod albedo;
+pub mod bake;
+pub mod describe;
+pub mod diff;
+pub mod eval;
+pub mod exit;
+pub mod inspect;
+pub mod list;
+pub mod output;
+pub mod progress;
+pub mod scene;
+
+use clap::{Parser, Subcommand};
+pub use exit::{Exit, Failure};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// Bakes BRDF lookup textures to a tolerance, and verifies them as it bakes.
+#[derive(Debug, Parser)]
+#[command(name = "brdfbake", version, about, after_help = exit::TABLE, max_term_width = 110)]
+pub struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// Bake the tables of a recipe, a preset or a glTF scene.
+    Bake(bake::Args),
+    /// Print what a baked file (or any EXR or PNG) holds.
+    Inspect(inspect::Args),
+    /// Compare two images or two output folders.
+    Diff(diff::Args),
+    /// Evaluate models at directions read as CSV; append the value.
+    Eval(eval::Args),
+    /// Print the directional albedo of a model with its error estimate.
+    Albedo(albedo::Args),
+    /// List models, tables, presets, formats, laws or quantities.
+    List(list::Args),
+    /// Describe a model, table, preset, law or quantity.
+    Describe(describe::Args),
+}
+
+/// Runs a parsed command. `cancel` is set when the user interrupts.
+///
+/// # Errors
+/// [`Failure`] carries the message and the exit code.
+pub fn run(cli: Cli, cancel: &Arc<AtomicBool>) -> Result<Exit, Failure> {
+    match cli.verb {
+        Verb::Bake(args) => bake::run(&args, cancel),
+        Verb::Inspect(args) => inspect::run(&args),
+        Verb::Diff(args) => diff::run(&args),
+        Verb::Eval(args) => eval::run(&args),
+        Verb::Albedo(args) => albedo::run(&args),
+        Verb::List(args) => list::run(&args),
+        Verb::Describe(args) => describe::run(&args),
+    }
+}
+
+/// The program: parse, run, print the failure, return the exit code.
+#[must_use]
+pub fn main() -> std::process::ExitCode {
+    let cli = Cli::parse();
+    let cancel = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&cancel);
+    // A second interrupt while files are being moved changes nothing: the first one is honoured at the next texel.
+    let _ = ctrlc::set_handler(move || flag.store(true, std::sync::atomic::Ordering::Relaxed));
+    let exit = match run(cli, &cancel) {
+        Ok(exit) => exit,
+        Err(failure) => {
+            output::error(&failure);
+            failure.exit
+        }
+    };
+    exit.into()
+}

@@ -1,0 +1,159 @@
+//! Progress for people: a bar per table and a total on a terminal, plain lines elsewhere, JSON lines on request.
+
+use super::output;
+use crate::pipeline::{Event, Progress};
+use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
+use std::io::IsTerminal;
+use std::sync::Mutex;
+
+/// How to report.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Format {
+    /// Text on stderr.
+    Human,
+    /// One JSON object a line on stdout.
+    Json,
+}
+
+/// The reporter that fits format, quietness and terminal.
+#[must_use]
+pub fn reporter(format: Format, quiet: bool) -> Box<dyn Progress> {
+    match format {
+        Format::Json => Box::new(Json),
+        Format::Human if quiet => Box::new(crate::pipeline::Silent),
+        Format::Human if std::io::stderr().is_terminal() => Box::new(Bars::default()),
+        Format::Human => Box::new(Plain),
+    }
+}
+
+struct Json;
+
+impl Progress for Json {
+    fn event(&self, event: &Event<'_>) {
+        if matches!(event, Event::TableProgress { .. }) {
+            return;
+        }
+        if let Ok(line) = serde_json::to_string(event) {
+            output::data(&line);
+        }
+    }
+}
+
+struct Plain;
+
+impl Progress for Plain {
+    fn event(&self, event: &Event<'_>) {
+        if let Some(line) = line(event) {
+            output::talk(&line);
+        }
+    }
+}
+
+#[derive(Default)]
+struct Bars {
+    all: MultiProgress,
+    state: Mutex<State>,
+}
+
+#[derive(Default)]
+struct State {
+    total: Option<ProgressBar>,
+    table: Option<ProgressBar>,
+}
+
+impl Bars {
+    fn on(&self, event: &Event<'_>, state: &mut State) {
+        match event {
+            Event::Plan { tables, .. } => {
+                let bar = self.all.add(ProgressBar::new(tables.len() as u64));
+                bar.set_style(style("total {bar:30} {pos}/{len} tables {elapsed}"));
+                state.total = Some(bar);
+            }
+            Event::TableStarted { table, texels, .. } => {
+                let bar = self.all.insert(0, ProgressBar::new(*texels as u64));
+                bar.set_style(style("{msg} {bar:30} {pos}/{len} texels"));
+                bar.set_message((*table).to_owned());
+                state.table = Some(bar);
+            }
+            Event::TableProgress { done, .. } => {
+                if let Some(bar) = &state.table {
+                    // rows may finish out of order; the bar only moves forward
+                    bar.set_position(bar.position().max(*done as u64));
+                }
+            }
+            Event::TableFinished { .. } => {
+                if let Some(bar) = state.table.take() {
+                    bar.finish_and_clear();
+                }
+                if let Some(bar) = &state.total {
+                    bar.inc(1);
+                }
+            }
+            Event::Summary { .. } => {
+                if let Some(bar) = state.total.take() {
+                    bar.finish_and_clear();
+                }
+            }
+            Event::Finding { .. } => {}
+        }
+    }
+}
+
+impl Progress for Bars {
+    fn event(&self, event: &Event<'_>) {
+        let Ok(mut state) = self.state.lock() else { return };
+        self.on(event, &mut state);
+        if let Some(line) = line(event) {
+            // indicatif's own println is silent off a terminal; suspend always prints
+            self.all.suspend(|| output::talk(&line));
+        }
+    }
+}
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
+}
+
+/// One line of text for an event, if it deserves one.
+fn line(event: &Event<'_>) -> Option<String> {
+    Some(match event {
+        Event::Plan { recipe, tables } => {
+            let texels: usize = tables.iter().map(|t| t.size.iter().product::<usize>()).sum();
+            format!("recipe {recipe}: {} tables, {texels} texels", tables.len())
+        }
+        Event::TableFinished {
+            table,
+            integration,
+            tolerance,
+            encoding,
+            reconstruction,
+            missed,
+            bake_seconds,
+            check_seconds,
+            ..
+        } => {
+            let mut text =
+                format!("  {table}: integration {:.1e} (asked {tolerance:.1e})", integration.largest);
+            for (output, error) in encoding {
+                text.push_str(&format!(", {output} rounding {error:.1e}"));
+                if let Some(r) = reconstruction.iter().find(|r| r.output == *output) {
+                    text.push_str(&format!(", as read {:.1e}", r.whole));
+                    if let Some(p) = r.practical {
+                        text.push_str(&format!(" (practical {p:.1e})"));
+                    }
+                }
+            }
+            if *missed > 0 {
+                text.push_str(&format!(", {missed} texels above the tolerance"));
+            }
+            text.push_str(&format!(" [{:.0} ms + {:.0} ms]", bake_seconds * 1e3, check_seconds * 1e3));
+            text
+        }
+        Event::Finding { table, finding } => format!("  warning: {table}: {finding}"),
+        Event::Summary { tables, written, unchanged, bytes, seconds } => format!(
+            "{tables} tables, {} kB: {written} files written, {unchanged} unchanged, {seconds:.2} s",
+            bytes.div_ceil(1000)
+        ),
+        _ => return None,
+    })
+}

@@ -1,0 +1,179 @@
+//! What a run tells while it works. One event is one line of `--message-format json`.
+
+use super::Outcome;
+use crate::grid::table::Extreme;
+use crate::recipe::Plan;
+use crate::verify::Finding;
+use serde::Serialize;
+
+/// Receives events. Implementations must not fail; a table's progress comes from several threads.
+pub trait Progress: Sync {
+    /// Something happened.
+    fn event(&self, event: &Event<'_>);
+}
+
+/// Ignores everything.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Progress for Silent {
+    fn event(&self, _event: &Event<'_>) {}
+}
+
+/// Something that happened. Serialised with `reason` as its tag.
+#[derive(Debug, Clone, Serialize)]
+#[serde(tag = "reason", rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Event<'a> {
+    /// The plan, before work starts.
+    Plan {
+        /// Recipe name.
+        recipe: &'a str,
+        /// Tables in order.
+        tables: Vec<PlanEntry<'a>>,
+    },
+    /// Work on a table starts.
+    TableStarted {
+        /// Table name.
+        table: &'a str,
+        /// Its number in the plan.
+        index: usize,
+        /// Number of texels.
+        texels: usize,
+    },
+    /// Texels are done. Not part of the JSON stream.
+    #[serde(skip)]
+    TableProgress {
+        /// Table name.
+        table: &'a str,
+        /// Its number in the plan.
+        index: usize,
+        /// Texels done.
+        done: usize,
+    },
+    /// A table is baked, verified and encoded (not yet written).
+    TableFinished {
+        /// Table name.
+        table: &'a str,
+        /// Its number in the plan.
+        index: usize,
+        /// Tolerance asked for.
+        tolerance: f64,
+        /// Largest estimated integration error.
+        integration: Extremum<'a>,
+        /// Largest rounding error, for each output.
+        encoding: Vec<(String, f64)>,
+        /// Largest and mean reconstruction error, for each output, over the whole and the practical domain.
+        reconstruction: Vec<ReconstructionEntry>,
+        /// Integrand evaluations.
+        evaluations: u64,
+        /// Texels that missed the tolerance.
+        missed: u64,
+        /// Seconds spent on integration.
+        bake_seconds: f64,
+        /// Seconds spent on laws, rounding and the comparison between texels.
+        check_seconds: f64,
+    },
+    /// A finding that does not stop the run (a waived law, a missed tolerance).
+    Finding {
+        /// Table name.
+        table: &'a str,
+        /// The finding.
+        #[serde(flatten)]
+        finding: &'a Finding,
+    },
+    /// Everything is written.
+    Summary {
+        /// Number of tables.
+        tables: usize,
+        /// Files that are new or changed.
+        written: usize,
+        /// Files that had the same bytes already.
+        unchanged: usize,
+        /// Bytes in all files.
+        bytes: u64,
+        /// Seconds in all.
+        seconds: f64,
+    },
+}
+
+/// A table of the plan.
+#[derive(Debug, Clone, Serialize)]
+pub struct PlanEntry<'a> {
+    /// Table name.
+    pub name: &'a str,
+    /// Table kind.
+    pub kind: &'a str,
+    /// Model, if it has one.
+    pub model: Option<&'a str>,
+    /// Texels along each axis, fastest first.
+    pub size: Vec<usize>,
+    /// Tolerance.
+    pub tolerance: f64,
+    /// Files that will be written.
+    pub files: Vec<String>,
+    /// Hash of its resolved recipe.
+    pub hash: &'a str,
+}
+
+/// The largest of something, borrowed.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Extremum<'a> {
+    /// The value.
+    pub largest: f64,
+    /// Channel.
+    pub channel: &'a str,
+    /// Axis ids and values.
+    pub at: &'a [(String, f64)],
+}
+
+impl<'a> From<&'a Extreme> for Extremum<'a> {
+    fn from(e: &'a Extreme) -> Self {
+        Extremum { largest: e.value, channel: &e.channel, at: &e.at }
+    }
+}
+
+/// Reconstruction errors of one output.
+#[derive(Debug, Clone, Serialize)]
+pub struct ReconstructionEntry {
+    /// `container:storage`.
+    pub output: String,
+    /// Largest over the whole domain.
+    pub whole: f64,
+    /// Mean over the whole domain.
+    pub whole_mean: f64,
+    /// Largest over the practical domain.
+    pub practical: Option<f64>,
+    /// Mean over the practical domain.
+    pub practical_mean: Option<f64>,
+}
+
+impl<'a> Event<'a> {
+    pub(super) fn plan(plan: &'a Plan) -> Event<'a> {
+        let tables = plan
+            .tables
+            .iter()
+            .map(|t| PlanEntry {
+                name: &t.name,
+                kind: t.bound.spec.kind.id,
+                model: t.bound.spec.model.as_ref().map(|(m, _)| m.id),
+                size: t.bound.spec.grid.axes().iter().map(|a| a.len).collect(),
+                tolerance: t.tolerance,
+                files: super::file_names(t),
+                hash: &t.hash,
+            })
+            .collect();
+        Event::Plan { recipe: &plan.name, tables }
+    }
+
+    pub(super) fn summary(outcome: &Outcome, seconds: f64) -> Event<'static> {
+        let files = outcome.manifest.tables.iter().flat_map(|t| &t.files);
+        Event::Summary {
+            tables: outcome.manifest.tables.len(),
+            written: outcome.written,
+            unchanged: outcome.unchanged,
+            bytes: files.map(|f| f.bytes).sum(),
+            seconds,
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! `manifest.json`: what a run wrote, table by table, with the facts that the files carry themselves.
+
+use crate::grid::Provenance;
+use crate::grid::provenance::{Encoding, Reconstruction, SCHEMA};
+use crate::recipe::Plan;
+use serde::{Deserialize, Serialize};
+
+/// File name of the manifest.
+pub const MANIFEST: &str = "manifest.json";
+
+/// The manifest of an output folder. No clock, host or path: the same recipe gives the same bytes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Version of this layout.
+    pub schema: u32,
+    /// Program and version.
+    pub tool: String,
+    /// Recipe name.
+    pub recipe: String,
+    /// Hash over the hashes of the tables.
+    pub hash: String,
+    /// Tables in the order of the recipe.
+    pub tables: Vec<TableRecord>,
+}
+
+/// One table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TableRecord {
+    /// What every file of the table says of itself, but for what depends on the storage.
+    #[serde(flatten)]
+    pub provenance: Provenance,
+    /// Texels along each axis, fastest first.
+    pub size: Vec<usize>,
+    /// The files.
+    pub files: Vec<FileRecord>,
+}
+
+/// One file of a table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FileRecord {
+    /// Name, relative to the manifest.
+    pub file: String,
+    /// Container id.
+    pub container: String,
+    /// Size in bytes.
+    pub bytes: u64,
+    /// blake3 of the bytes.
+    pub blake3: String,
+    /// How the values are stored and what the rounding costs.
+    pub encoding: Encoding,
+    /// Errors of the reader's reconstruction from this file.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub reconstruction: Option<Reconstruction>,
+}
+
+impl Manifest {
+    pub(super) fn new(plan: &Plan, tables: Vec<TableRecord>) -> Manifest {
+        let mut hasher = blake3::Hasher::new();
+        for table in &plan.tables {
+            hasher.update(table.hash.as_bytes());
+        }
+        Manifest {
+            schema: SCHEMA,
+            tool: tool(),
+            recipe: plan.name.clone(),
+            hash: hasher.finalize().to_hex().to_string(),
+            tables,
+        }
+    }
+
+    /// The file's bytes: indented JSON with a final newline.
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = serde_json::to_vec_pretty(self).unwrap_or_default();
+        bytes.push(b'\n');
+        bytes
+    }
+}
+
+/// Program and version, as files name it.
+pub(super) fn tool() -> String {
+    format!("brdfbake {}", env!("CARGO_PKG_VERSION"))
+}

@@ -1,0 +1,172 @@
+//! Plan -> bake -> verify -> encode -> write. Nothing is written unless every table of the plan is baked and verified.
+//!
+//! The pipeline never prints: it sends [`Event`]s to a [`Progress`].
+
+mod event;
+mod manifest;
+mod table;
+
+pub use event::{Event, Extremum, Progress, Silent};
+pub use manifest::{FileRecord, MANIFEST, Manifest, TableRecord};
+
+use crate::encode::atomic::{self, WriteError};
+use crate::encode::{EncodeError, RangeFault};
+use crate::recipe::{Plan, PlannedTable};
+use crate::tables::driver::BakeError;
+use crate::verify::Finding;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// Where to write and how many threads to use.
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// Output folder.
+    pub out: PathBuf,
+    /// Threads; the number of cores if none.
+    pub jobs: Option<usize>,
+}
+
+/// Why nothing was written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PipelineError {
+    /// A texel has no value, or misses the tolerance.
+    #[error("table {table}: {error}")]
+    Bake {
+        /// Table name.
+        table: String,
+        /// Why.
+        #[source]
+        error: BakeError,
+    },
+    /// Laws that do not hold and are not waived.
+    #[error("{} broken; nothing was written", laws(.0.len()))]
+    Laws(Vec<Finding>),
+    /// A value that the storage cannot hold.
+    #[error("table {table}, {output}: {error}")]
+    Range {
+        /// Table name.
+        table: String,
+        /// Container and storage.
+        output: String,
+        /// Which value.
+        #[source]
+        error: RangeFault,
+    },
+    /// A table that the container cannot hold.
+    #[error("table {table}, {output}: {error}")]
+    Encode {
+        /// Table name.
+        table: String,
+        /// Container and storage.
+        output: String,
+        /// Why.
+        #[source]
+        error: EncodeError,
+    },
+    /// Files could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// The threads could not be started.
+    #[error("cannot start {jobs} threads: {message}")]
+    Threads {
+        /// How many.
+        jobs: usize,
+        /// The system's message.
+        message: String,
+    },
+    /// Metadata could not be written as JSON (a number that is not finite).
+    #[error("table {table}: metadata: {message}")]
+    Metadata {
+        /// Table name.
+        table: String,
+        /// The message.
+        message: String,
+    },
+}
+
+fn laws(n: usize) -> String {
+    if n == 1 { "one law is".to_owned() } else { format!("{n} laws are") }
+}
+
+/// What a run did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// The manifest, as written.
+    pub manifest: Manifest,
+    /// Files that are new or changed.
+    pub written: usize,
+    /// Files that had the same bytes already.
+    pub unchanged: usize,
+}
+
+/// Runs a plan. `cancel` is looked at between texels and before files are moved to their names.
+///
+/// # Errors
+/// [`PipelineError`]; in every case but a failed rename the output folder is as it was.
+pub fn run(
+    plan: &Plan,
+    settings: &Settings,
+    cancel: &AtomicBool,
+    progress: &dyn Progress,
+) -> Result<Outcome, PipelineError> {
+    let start = Instant::now();
+    atomic::check_writable(&settings.out)?;
+    let jobs = settings.jobs.unwrap_or(0);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(jobs)
+        .build()
+        .map_err(|e| PipelineError::Threads { jobs, message: e.to_string() })?;
+    progress.event(&Event::plan(plan));
+    let mut made = Vec::new();
+    let mut findings = Vec::new();
+    for (index, planned) in plan.tables.iter().enumerate() {
+        match pool.install(|| table::make(plan, planned, index, cancel, progress)) {
+            Ok(table) => made.push(table),
+            // the other tables are still checked, so that one run shows every broken law
+            Err(PipelineError::Laws(broken)) => findings.extend(broken),
+            Err(e) => return Err(e),
+        }
+    }
+    if !findings.is_empty() {
+        return Err(PipelineError::Laws(findings));
+    }
+    let manifest = Manifest::new(plan, made.iter().map(|m| m.record.clone()).collect());
+    let mut files: Vec<(PathBuf, Vec<u8>)> = made
+        .into_iter()
+        .flat_map(|m| m.files)
+        .map(|(name, bytes)| (settings.out.join(name), bytes))
+        .collect();
+    files.push((settings.out.join(MANIFEST), manifest.to_bytes()));
+    let written = atomic::write_all(&files, cancel)?;
+    let outcome = Outcome { manifest, written: written.written, unchanged: written.unchanged };
+    progress.event(&Event::summary(&outcome, start.elapsed().as_secs_f64()));
+    Ok(outcome)
+}
+
+/// Names of every file that a plan writes, in order, relative to the output folder.
+#[must_use]
+pub fn outputs(plan: &Plan) -> Vec<String> {
+    let mut names: Vec<String> = plan.tables.iter().flat_map(file_names).collect();
+    names.push(MANIFEST.to_owned());
+    names
+}
+
+/// File names of one table, one an output: `name.exr`, or `name.float.exr` where a container is used twice.
+#[must_use]
+pub fn file_names(planned: &PlannedTable) -> Vec<String> {
+    let outputs = &planned.outputs;
+    outputs
+        .iter()
+        .map(|o| {
+            let extension = crate::encode::encoder(&o.container).map_or("bin", |e| e.extension());
+            let twice = outputs.iter().filter(|other| other.container == o.container).count() > 1;
+            if twice {
+                format!("{}.{}.{extension}", planned.name, o.storage)
+            } else {
+                format!("{}.{extension}", planned.name)
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,203 @@
+//! One table: bake, verify, round, compare between texels, encode in memory.
+
+use super::event::ReconstructionEntry;
+use super::manifest::tool;
+use super::{Event, Extremum, FileRecord, PipelineError, Progress, TableRecord};
+use crate::encode::{self, EncodeInput, Storage};
+use crate::grid::Provenance;
+use crate::grid::provenance::{AxisRecord, Encoding, Integration, RecipeId, SCHEMA, Subject};
+use crate::models::source_lines;
+use crate::recipe::{Output, Plan, PlannedTable};
+use crate::tables::driver::{self, Options};
+use crate::tables::{Bound, Spec};
+use crate::verify::{self, Verified, reconstruction::Probe};
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// Most points at which a table is compared with fresh integrals between its texels.
+const COMPARED: usize = 1 << 16;
+
+/// A table ready to be written.
+pub(super) struct Made {
+    pub(super) record: TableRecord,
+    pub(super) files: Vec<(String, Vec<u8>)>,
+}
+
+pub(super) fn make(
+    plan: &Plan,
+    planned: &PlannedTable,
+    index: usize,
+    cancel: &AtomicBool,
+    progress: &dyn Progress,
+) -> Result<Made, PipelineError> {
+    let name = planned.name.as_str();
+    let spec = &planned.bound.spec;
+    progress.event(&Event::TableStarted { table: name, index, texels: spec.grid.len() });
+    let start = Instant::now();
+    let tick = |done| progress.event(&Event::TableProgress { table: name, index, done });
+    let options = Options { tolerance: planned.tolerance, on_miss: planned.on_miss, cancel, progress: &tick };
+    let table = driver::bake(&planned.bound, options)
+        .map_err(|error| PipelineError::Bake { table: name.to_owned(), error })?;
+    let bake_seconds = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let (verified, let_through) = verify::check(&planned.bound, table, planned.tolerance, &planned.waivers)
+        .map_err(PipelineError::Laws)?;
+    for finding in &let_through {
+        progress.event(&Event::Finding { table: name, finding });
+    }
+    let provenance = provenance(plan, planned, &verified);
+    let mut made = Made {
+        record: TableRecord {
+            provenance: provenance.clone(),
+            size: spec.grid.axes().iter().map(|a| a.len).collect(),
+            files: Vec::new(),
+        },
+        files: Vec::new(),
+    };
+    let names = super::file_names(planned);
+    let probe = planned.reconstruction.then(|| Probe::new(&planned.bound, planned.tolerance, COMPARED));
+    for (output, file) in planned.outputs.iter().zip(names) {
+        let (record, bytes) = encode_output(planned, output, &verified, &provenance, probe.as_ref(), &file)?;
+        made.record.files.push(record);
+        made.files.push((file, bytes));
+    }
+    let check_seconds = start.elapsed().as_secs_f64();
+    progress.event(&finished(planned, index, &made.record, bake_seconds, check_seconds));
+    Ok(made)
+}
+
+fn encode_output(
+    planned: &PlannedTable,
+    output: &Output,
+    verified: &Verified,
+    provenance: &Provenance,
+    probe: Option<&Probe<'_>>,
+    file: &str,
+) -> Result<(FileRecord, Vec<u8>), PipelineError> {
+    let table = verified.table();
+    let (name, label) = (planned.name.clone(), output.to_string());
+    let unknown = || PipelineError::Encode {
+        table: planned.name.clone(),
+        output: output.to_string(),
+        error: encode::EncodeError::Unknown { id: output.to_string() },
+    };
+    let encoder = encode::encoder(&output.container).ok_or_else(unknown)?;
+    let storage = Storage::find(&output.storage).ok_or_else(unknown)?;
+    let stored = encode::quantise_table(table, storage).map_err(|error| PipelineError::Range {
+        table: name.clone(),
+        output: label.clone(),
+        error,
+    })?;
+    let encoding = Encoding { storage: storage.id().to_owned(), largest_error: stored.largest_error.value };
+    let reconstruction = probe.map(|p| p.measure(&stored.values));
+    let provenance = Provenance {
+        encoding: Some(encoding.clone()),
+        reconstruction: reconstruction.clone(),
+        ..provenance.clone()
+    };
+    let json = serde_json::to_string(&provenance)
+        .map_err(|e| PipelineError::Metadata { table: name.clone(), message: e.to_string() })?;
+    let input = EncodeInput {
+        grid: &table.grid,
+        channels: &table.channels,
+        values: &stored.values,
+        storage,
+        provenance_json: &json,
+    };
+    let bytes = encoder.encode(&input).map_err(|error| PipelineError::Encode {
+        table: name,
+        output: label,
+        error,
+    })?;
+    let record = FileRecord {
+        file: file.to_owned(),
+        container: output.container.clone(),
+        bytes: bytes.len() as u64,
+        blake3: blake3::hash(&bytes).to_hex().to_string(),
+        encoding,
+        reconstruction,
+    };
+    Ok((record, bytes))
+}
+
+/// What every file of a table says of itself.
+fn provenance(plan: &Plan, planned: &PlannedTable, verified: &Verified) -> Provenance {
+    let Bound { spec, baker } = &planned.bound;
+    let table = verified.table();
+    Provenance {
+        schema: SCHEMA,
+        tool: tool(),
+        recipe: RecipeId { name: plan.name.clone(), hash: planned.hash.clone() },
+        name: planned.name.clone(),
+        table: Subject {
+            id: spec.kind.id.to_owned(),
+            title: format!("{}, layout {}: {}", spec.kind.title, spec.layout.id, spec.layout.doc),
+            formula: spec.kind.formula.to_owned(),
+            params: spec.params.to_json(&spec.swept()),
+            sources: source_lines(spec.kind.sources),
+        },
+        model: model_subject(spec),
+        axes: spec.grid.axes().iter().map(AxisRecord::new).collect(),
+        channels: table.channels.clone(),
+        integration: Integration {
+            rule: baker.rule(),
+            tolerance: planned.tolerance,
+            largest_error: table.largest_error(),
+            evaluations: table.total_evaluations(),
+            missed: driver::missed(table, planned.tolerance) as u64,
+        },
+        encoding: None,
+        reconstruction: None,
+        laws: verified.laws().to_vec(),
+        verified: verified.waived().is_empty(),
+        waived: verified.waived().to_vec(),
+    }
+}
+
+fn model_subject(spec: &Spec) -> Option<Subject> {
+    let (info, params) = spec.model.as_ref()?;
+    Some(Subject {
+        id: info.id.to_owned(),
+        title: info.title.to_owned(),
+        formula: info.formula.to_owned(),
+        params: params.to_json(&spec.swept()),
+        sources: info.source_lines(),
+    })
+}
+
+fn finished<'a>(
+    planned: &'a PlannedTable,
+    index: usize,
+    record: &'a TableRecord,
+    bake_seconds: f64,
+    check_seconds: f64,
+) -> Event<'a> {
+    let integration = &record.provenance.integration;
+    let reconstruction = planned.outputs.iter().zip(&record.files).filter_map(|(o, f)| {
+        let r = f.reconstruction.as_ref()?;
+        Some(ReconstructionEntry {
+            output: o.to_string(),
+            whole: r.whole.largest.value,
+            whole_mean: r.whole.mean,
+            practical: r.practical.as_ref().map(|p| p.largest.value),
+            practical_mean: r.practical.as_ref().map(|p| p.mean),
+        })
+    });
+    Event::TableFinished {
+        table: &planned.name,
+        index,
+        tolerance: planned.tolerance,
+        integration: Extremum::from(&integration.largest_error),
+        encoding: planned
+            .outputs
+            .iter()
+            .zip(&record.files)
+            .map(|(o, f)| (o.to_string(), f.encoding.largest_error))
+            .collect(),
+        reconstruction: reconstruction.collect(),
+        evaluations: integration.evaluations,
+        missed: integration.missed,
+        bake_seconds,
+        check_seconds,
+    }
+}

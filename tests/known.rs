@@ -1,0 +1,81 @@
+//! Every value that a model's entry claims to be known, through the public interface.
+#![allow(clippy::unwrap_used, reason = "test")]
+
+use brdfbake::math::frame;
+use brdfbake::models::{MODELS, ModelInfo, Params, Quantity};
+use brdfbake::tables::integral::{Functional, integrate};
+use serde_json::{Map, Value};
+
+fn params(info: &'static ModelInfo, set: &[(&str, &str)]) -> Params {
+    let map: Map<String, Value> =
+        set.iter().map(|(k, v)| ((*k).to_owned(), serde_json::from_str(v).unwrap())).collect();
+    Params::resolve(info.id, info.params, map.iter().map(|(k, v)| (k.as_str(), v))).unwrap()
+}
+
+#[test]
+fn known_values_are_reproduced() {
+    for info in MODELS {
+        for known in info.known {
+            let model = (info.build)(&params(info, known.params)).unwrap();
+            let what = format!("{} {:?} {:?}", info.id, known.what, known.params);
+            let got = match known.what {
+                Quantity::Value([ti, pi, to, po]) => {
+                    model.eval(frame::spherical(to, po), frame::spherical(ti, pi))
+                }
+                Quantity::Albedo(mu) => {
+                    // by the chart and, where there is one, by the reduction
+                    let tolerance = (0.1 * known.relative * known.value).max(1e-13);
+                    let both = [Functional::One, Functional::One];
+                    let chart = integrate(&*model, info.id, mu, &both, tolerance).unwrap();
+                    let reduced = integrate(&*model, info.id, mu, &[Functional::One], tolerance).unwrap();
+                    let apart = (chart.value[0] - reduced.value[0]).abs();
+                    assert!(apart <= chart.error[0] + reduced.error[0] + 1e-13, "{what}: chart and reduction {apart:e}");
+                    let slack = 1e-12 * known.value;
+                    let off = (chart.value[0] - known.value).abs();
+                    assert!(off <= chart.error[0] + slack, "{what}: {off:e}, estimate {:e}", chart.error[0]);
+                    chart.value[0]
+                }
+            };
+            let error = (got - known.value).abs() / known.value.abs();
+            assert!(error <= known.relative, "{what}: got {got:.17}, expected {:.17}, off by {error:e}", known.value);
+        }
+    }
+}
+
+#[test]
+fn every_model_holds_the_laws_that_it_claims() {
+    use brdfbake::verify::seeds::Seeds;
+    let mut seeds = Seeds::new(7);
+    for info in MODELS {
+        for alpha in ["0.01", "0.1", "0.5", "1"] {
+            let has_alpha = info.params.iter().any(|p| p.id == "alpha");
+            let set: &[(&str, &str)] = if has_alpha { &[("alpha", alpha)] } else { &[] };
+            let model = (info.build)(&params(info, set)).unwrap();
+            for _ in 0..200 {
+                let mut direction = || frame::spherical(1.55 * seeds.unit(), 6.28 * seeds.unit());
+                let (a, b) = (direction(), direction());
+                let (forth, back) = (model.eval(a, b), model.eval(b, a));
+                assert!(forth.is_finite() && forth >= 0.0, "{} alpha {alpha}: f = {forth}", info.id);
+                if info.laws.reciprocal {
+                    let scale = forth.abs().max(back.abs()).max(1e-20);
+                    assert!((forth - back).abs() <= 1e-11 * scale, "{} alpha {alpha}: {forth} {back}", info.id);
+                }
+            }
+            for mu in [0.0, 1e-3, 0.05, 0.3, 0.7, 1.0] {
+                let e = integrate(&*model, info.id, mu, &[Functional::One], 1e-4).unwrap();
+                if info.laws.passive {
+                    assert!(e.value[0] <= 1.0 + e.error[0], "{} alpha {alpha} mu {mu}: E = {}", info.id, e.value[0]);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_model_that_is_not_passive_is_known_not_to_be() {
+    // Cook-Torrance as printed is four times the modern form: E -> 4 at small alpha
+    let info = MODELS.iter().find(|m| m.id == "cook-torrance-1982").unwrap();
+    let model = (info.build)(&params(info, &[("alpha", "0.05")])).unwrap();
+    let e = integrate(&*model, info.id, 1.0, &[Functional::One], 1e-3).unwrap();
+    assert!((e.value[0] - 4.0).abs() < 0.01, "{}", e.value[0]);
+}
