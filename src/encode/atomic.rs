@@ -103,7 +103,8 @@ pub fn write_all(files: &[(PathBuf, Vec<u8>)], cancel: &AtomicBool) -> Result<Wr
             continue;
         }
         let folder = folder(path);
-        fs::create_dir_all(folder).map_err(|source| WriteError::Folder { path: folder.to_owned(), source })?;
+        fs::create_dir_all(folder)
+            .map_err(|source| WriteError::Folder { path: folder.to_owned(), source })?;
         let failed = |source| WriteError::Write { path: path.clone(), source };
         let (temporary, mut file) = create(folder).map_err(failed)?;
         pending.0.push((temporary, path));

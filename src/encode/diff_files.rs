@@ -189,8 +189,7 @@ fn compare(paths: [&Path; 2], bytes: [&[u8]; 2], tolerance: Tolerance) -> Result
     let picture = |e: &str| super::ENCODERS.iter().any(|encoder| encoder.extension() == e);
     if picture(&a) && picture(&b) {
         let image = |i: usize| {
-            read::read_bytes(bytes[i])
-                .map_err(|source| DiffError::Read { path: paths[i].to_owned(), source })
+            read::read_bytes(bytes[i]).map_err(|source| DiffError::Read { path: paths[i].to_owned(), source })
         };
         return Ok(FileDiff::Image(diff::images(&image(0)?, &image(1)?, tolerance)));
     }

@@ -20,8 +20,11 @@ use std::io::Cursor;
 #[derive(Debug, Clone, Copy)]
 pub struct Exr;
 
-const ENCODING: Encoding =
-    Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
+const ENCODING: Encoding = Encoding {
+    compression: Compression::ZIP16,
+    blocks: Blocks::ScanLines,
+    line_order: LineOrder::Increasing,
+};
 
 impl Encoder for Exr {
     fn id(&self) -> &'static str {

@@ -159,7 +159,8 @@ fn invalid(what: &'static str) -> Error {
 /// that ends the process. No counter of a sound block exceeds 64 per byte (8 x 8 blocks of a picture one pixel wide).
 fn guard(header: &Header, chunk: &Chunk) -> ExrResult<()> {
     let (CompressedBlock::ScanLine(CompressedScanLineBlock { compressed_pixels_le: bytes, .. })
-    | CompressedBlock::Tile(CompressedTileBlock { compressed_pixels_le: bytes, .. })) = &chunk.compressed_block
+    | CompressedBlock::Tile(CompressedTileBlock { compressed_pixels_le: bytes, .. })) =
+        &chunk.compressed_block
     else {
         return Ok(());
     };
@@ -168,7 +169,8 @@ fn guard(header: &Header, chunk: &Chunk) -> ExrResult<()> {
     }
     let block = header.max_block_pixel_size();
     let pixels = block.0.min(header.layer_size.0).saturating_mul(block.1.min(header.layer_size.1));
-    let limit = (pixels.saturating_mul(header.channels.bytes_per_pixel) as u64).saturating_mul(64).min(1 << 31);
+    let limit =
+        (pixels.saturating_mul(header.channels.bytes_per_pixel) as u64).saturating_mul(64).min(1 << 31);
     let counters = bytes.chunks_exact(8).take(11).filter_map(|b| b.try_into().ok()).map(u64::from_le_bytes);
     if counters.max().is_some_and(|n| n > limit) {
         return Err(invalid("a DWA block that claims to be larger than its pixels"));

@@ -7,7 +7,9 @@
 //! | 3 | RGB | in order |
 //! | 4 | RGBA | in order |
 //!
-//! Two channels are not grey with alpha: many programs multiply by alpha, or drop it.
+//! Two channels are not grey with alpha: many programs multiply by alpha, or drop it. With four channels there is no
+//! choice: a program that multiplies by alpha (OpenImageIO does, unless `oiio:UnassociatedAlpha` is set) reads three of
+//! them wrongly. EXR has no such trap.
 //!
 //! The samples are linear data: gAMA is 1 and there is no sRGB chunk. The provenance is an uncompressed iTXt chunk with
 //! the keyword `brdfbake`; it holds the ids and ranges of the channels, without which the codes mean nothing.
@@ -44,7 +46,8 @@ impl Encoder for Png {
         let (Ok(w), Ok(h)) = (u32::try_from(width), u32::try_from(height)) else {
             return Err(EncodeError::Size { format: self.id(), width, height, limit: 1 << 24 });
         };
-        let library = |e: ::png::EncodingError| EncodeError::Library { format: self.id(), source: Box::new(e) };
+        let library =
+            |e: ::png::EncodingError| EncodeError::Library { format: self.id(), source: Box::new(e) };
         let mut bytes = Vec::new();
         let mut encoder = ::png::Encoder::new(&mut bytes, w, h);
         encoder.set_color(match input.channels.len() {
@@ -65,7 +68,11 @@ impl Encoder for Png {
 }
 
 /// Big-endian samples, rows from the top.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code is an integer in 0 ..= 65535")]
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a code is an integer in 0 ..= 65535"
+)]
 fn pixels(input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
     let n = input.channels.len();
     let pad = samples_per_pixel(n) - n;

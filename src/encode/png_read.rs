@@ -109,7 +109,8 @@ fn found(info: &png::Info<'_>) -> Option<String> {
         t.decompress_text_with_limit(MAX_TEXT).ok()?;
         t.get_text().ok()
     });
-    let plain = || info.uncompressed_latin1_text.iter().find(|t| t.keyword == ATTRIBUTE).map(|t| t.text.clone());
+    let plain =
+        || info.uncompressed_latin1_text.iter().find(|t| t.keyword == ATTRIBUTE).map(|t| t.text.clone());
     let packed = || {
         let mut t = info.compressed_latin1_text.iter().find(|t| t.keyword == ATTRIBUTE)?.clone();
         t.decompress_text_with_limit(MAX_TEXT).ok()?;
