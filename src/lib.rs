@@ -7,17 +7,17 @@
 //! |---|---|---|
 //! | 0 | [`cite`] | the bibliography |
 //! | 1 | [`math`] | frames, special functions, compensated sums |
-//! | 2 | `grid` | axes, tables, the reference reader, provenance |
+//! | 2 | [`grid`] | axes, tables, the reference reader, provenance |
 //! | 2 | [`integrate`] | quadrature rules and charts of the hemisphere; knows no BRDF |
 //! | 2 | [`terms`] | D, F, G of the papers in closed form |
-//! | 3 | `models` | one file a reflectance model, and their registry |
-//! | 4 | `tables` | one file a bakeable table, their registry, and the one driver loop |
-//! | 5 | `verify` | one file a law; findings; `Verified` |
+//! | 3 | [`models`] | one file a reflectance model, and their registry |
+//! | 4 | [`tables`] | one file a bakeable table, their registry, and the one driver loop |
+//! | 5 | [`verify`] | one file a law; findings; `Verified` |
 //! | 6 | [`encode`] | one file a container; readers |
-//! | 6 | `report` | findings and provenance as text and JSON |
+//! | 7 | [[`report`]] | what a person reads: files and differences as text |
 //! | 7 | [`scene`] | what a glTF file needs |
-//! | 7 | `recipe` | preset files to a resolved plan |
-//! | 8 | `pipeline` | plan, bake, verify, encode, write |
+//! | 7 | [`recipe`] | preset files to a resolved plan |
+//! | 8 | [`pipeline`] | plan, bake, verify, encode, write |
 //! | 9 | `cli` | one file a verb (feature `cli`) |
 
 pub mod cite;

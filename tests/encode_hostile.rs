@@ -22,7 +22,7 @@ fn exr_file(compression: Compression, blocks: Blocks, layers: usize) -> Vec<u8> 
             [
                 ("f", FlatSamples::F32((0..n).map(wave).collect())),
                 ("h", FlatSamples::F16((0..n).map(|i| f16::from_f32(wave(i))).collect())),
-                ("u", FlatSamples::U32((0..n).map(|i| i as u32).collect())),
+                ("u", FlatSamples::U32((0..n).map(|i| u32::try_from(i).unwrap()).collect())),
             ]
             .into_iter()
             .map(|(name, samples)| AnyChannel::new(name, samples))
@@ -146,6 +146,79 @@ proptest! {
         }
         let _ = read_bytes(&bytes);
     }
+
+    #[test]
+    fn flipped_png_bytes_with_good_checksums_do_not_panic(
+        seed in 12..18usize,
+        flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+    ) {
+        let mut bytes = seeds()[seed].clone();
+        for (at, value) in flips {
+            let at = at.index(bytes.len());
+            bytes[at] = value;
+        }
+        let _ = read_bytes(&repaired(bytes));
+    }
+}
+
+/// CRC-32 of a PNG chunk, so that a forged chunk gets past the checksum.
+fn crc(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(!0, |crc, &b| {
+        (0..8).fold(crc ^ u32::from(b), |c, _| if c & 1 == 1 { c >> 1 ^ 0xedb8_8320 } else { c >> 1 })
+    })
+}
+
+/// The PNG with the checksum of every chunk made right again.
+fn repaired(mut bytes: Vec<u8>) -> Vec<u8> {
+    let mut at = 8;
+    while let Some(head) = bytes.get(at..at + 8) {
+        let len = u32::from_be_bytes(head[..4].try_into().unwrap()) as usize;
+        let Some(body) = bytes.get(at + 4..at + 8 + len) else { break };
+        let sum = crc(body).to_be_bytes();
+        let Some(slot) = bytes.get_mut(at + 8 + len..at + 12 + len) else { break };
+        slot.copy_from_slice(&sum);
+        at += 12 + len;
+    }
+    bytes
+}
+
+#[test]
+fn a_forged_size_is_refused_before_memory_is_asked_for() {
+    let mut bytes = png_file(png::ColorType::Rgb, png::BitDepth::Sixteen);
+    bytes[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
+    let message = read_bytes(&repaired(bytes)).unwrap_err().to_string();
+    assert_eq!(message, "png: the header tells of 65536 x 65536 pixels; at most 2^28 samples are read");
+
+    let mut bytes = exr_file(Compression::ZIP16, Blocks::ScanLines, 1);
+    let at = bytes.windows(10).position(|w| w == b"dataWindow").unwrap() + 10 + 1 + 6 + 4;
+    bytes[at + 8..at + 12].copy_from_slice(&0xff_ffff_i32.to_le_bytes());
+    let message = read_bytes(&bytes).unwrap_err().to_string();
+    assert_eq!(message, "exr: the header tells of 16777216 x 37 pixels; at most 2^28 samples are read");
+}
+
+#[test]
+fn a_block_named_twice_is_an_error_and_not_a_hole() {
+    let mut bytes = exr_file(Compression::ZIP1, Blocks::ScanLines, 1);
+    assert!(read_bytes(&bytes).is_ok());
+    // The offset table has 37 entries and ends where its own first entry points to.
+    let table = (0..bytes.len() - 8)
+        .find(|&i| u64::from_le_bytes(bytes[i..i + 8].try_into().unwrap()) == (i + 37 * 8) as u64)
+        .unwrap();
+    let first: [u8; 8] = bytes[table..table + 8].try_into().unwrap();
+    bytes[table + 8..table + 16].copy_from_slice(&first);
+    let message = read_bytes(&bytes).unwrap_err().to_string();
+    assert_eq!(message, "exr: invalid: a block is there twice");
+}
+
+#[test]
+fn a_text_bomb_is_left_packed() {
+    // 64 MiB of blanks pack into 64 kB; texts are unpacked up to 16 MiB.
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 1, 1);
+    encoder.add_ztxt_chunk("brdfbake".to_owned(), " ".repeat(1 << 26)).unwrap();
+    encoder.write_header().unwrap().write_image_data(&[7]).unwrap();
+    let image = read_bytes(&bytes).unwrap();
+    assert!(image.provenance.is_none());
 }
 
 #[test]

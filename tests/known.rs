@@ -29,7 +29,10 @@ fn known_values_are_reproduced() {
                     let chart = integrate(&*model, info.id, mu, &both, tolerance).unwrap();
                     let reduced = integrate(&*model, info.id, mu, &[Functional::One], tolerance).unwrap();
                     let apart = (chart.value[0] - reduced.value[0]).abs();
-                    assert!(apart <= chart.error[0] + reduced.error[0] + 1e-13, "{what}: chart and reduction {apart:e}");
+                    assert!(
+                        apart <= chart.error[0] + reduced.error[0] + 1e-13,
+                        "{what}: chart and reduction {apart:e}"
+                    );
                     let slack = 1e-12 * known.value;
                     let off = (chart.value[0] - known.value).abs();
                     assert!(off <= chart.error[0] + slack, "{what}: {off:e}, estimate {:e}", chart.error[0]);
@@ -37,7 +40,11 @@ fn known_values_are_reproduced() {
                 }
             };
             let error = (got - known.value).abs() / known.value.abs();
-            assert!(error <= known.relative, "{what}: got {got:.17}, expected {:.17}, off by {error:e}", known.value);
+            assert!(
+                error <= known.relative,
+                "{what}: got {got:.17}, expected {:.17}, off by {error:e}",
+                known.value
+            );
         }
     }
 }
@@ -58,13 +65,22 @@ fn every_model_holds_the_laws_that_it_claims() {
                 assert!(forth.is_finite() && forth >= 0.0, "{} alpha {alpha}: f = {forth}", info.id);
                 if info.laws.reciprocal {
                     let scale = forth.abs().max(back.abs()).max(1e-20);
-                    assert!((forth - back).abs() <= 1e-11 * scale, "{} alpha {alpha}: {forth} {back}", info.id);
+                    assert!(
+                        (forth - back).abs() <= 1e-11 * scale,
+                        "{} alpha {alpha}: {forth} {back}",
+                        info.id
+                    );
                 }
             }
             for mu in [0.0, 1e-3, 0.05, 0.3, 0.7, 1.0] {
                 let e = integrate(&*model, info.id, mu, &[Functional::One], 1e-4).unwrap();
                 if info.laws.passive {
-                    assert!(e.value[0] <= 1.0 + e.error[0], "{} alpha {alpha} mu {mu}: E = {}", info.id, e.value[0]);
+                    assert!(
+                        e.value[0] <= 1.0 + e.error[0],
+                        "{} alpha {alpha} mu {mu}: E = {}",
+                        info.id,
+                        e.value[0]
+                    );
                 }
             }
         }

@@ -97,7 +97,9 @@ fn rooms_import_only_lower_rooms() {
         for room in rooms(&std::fs::read_to_string(&file).unwrap()) {
             match rank(&room) {
                 Some(r) if r < own_rank || room == own => {}
-                Some(r) => faults.push(format!("{}: rank {own_rank} imports {room} of rank {r}", relative.display())),
+                Some(r) => {
+                    faults.push(format!("{}: rank {own_rank} imports {room} of rank {r}", relative.display()))
+                }
                 None => faults.push(format!("{}: unknown room {room}", relative.display())),
             }
         }

@@ -21,7 +21,10 @@ fn entries(room: &str, marker: &str) -> BTreeSet<String> {
 }
 
 fn check_id(id: &str) {
-    assert!(id.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-'), "{id} is not kebab-case");
+    assert!(
+        id.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-'),
+        "{id} is not kebab-case"
+    );
 }
 
 fn check_params(owner: &str, params: &[Param]) {
@@ -32,8 +35,12 @@ fn check_params(owner: &str, params: &[Param]) {
             Kind::Number { min, max, preset } => {
                 assert!(min < max, "{owner}.{}: empty range", p.id);
                 match preset {
-                    Preset::Value(v) => assert!((min..=max).contains(&v), "{owner}.{}: default out of range", p.id),
-                    Preset::Of(id) => assert!(params[..i].iter().any(|q| q.id == id), "{owner}.{}: `{id}`", p.id),
+                    Preset::Value(v) => {
+                        assert!((min..=max).contains(&v), "{owner}.{}: default out of range", p.id)
+                    }
+                    Preset::Of(id) => {
+                        assert!(params[..i].iter().any(|q| q.id == id), "{owner}.{}: `{id}`", p.id)
+                    }
                 }
             }
             Kind::Choice(words) => assert!(words.len() > 1, "{owner}.{}: nothing to choose", p.id),
@@ -71,7 +78,11 @@ fn tables_are_complete() {
         check_id(t.id);
         check_params(t.id, t.params);
         assert!(!t.sources.is_empty() && t.sources.iter().all(|s| !s.1.is_empty()), "{}: sources", t.id);
-        assert!(!t.layouts.is_empty() && t.layouts.iter().all(|l| !l.channels.is_empty()), "{}: layouts", t.id);
+        assert!(
+            !t.layouts.is_empty() && t.layouts.iter().all(|l| !l.channels.is_empty()),
+            "{}: layouts",
+            t.id
+        );
         assert!(t.coordinates.iter().all(|c| Quantity::find(c).is_some()), "{}: coordinates", t.id);
         assert!(t.laws.iter().all(|l| LAWS.iter().any(|law| law.id == *l)), "{}: laws", t.id);
         if let ModelUse::Any(id) | ModelUse::Split(id) = t.model {

@@ -18,6 +18,9 @@ use std::io::Cursor;
 
 const FORMAT: &str = "exr";
 
+/// Most channels of a file, all parts together: names are compared pair by pair.
+const MAX_CHANNELS: usize = 4096;
+
 /// Reads a file. The crate (1.74) panics on some damaged B44 blocks where overflow checks are on, so a panic is caught
 /// and told as an error; the message of the panic hook, if the program has one, is still printed.
 pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
@@ -55,13 +58,17 @@ fn fault(fault: String) -> ReadError {
 fn size(headers: &[Header]) -> Result<(usize, usize), ReadError> {
     let Some(first) = headers.first() else { return Err(fault("the file has no part".to_owned())) };
     let (width, height) = (first.layer_size.0, first.layer_size.1);
+    let channels: usize = headers.iter().map(|h| h.channels.list.len()).sum();
+    if channels == 0 || channels > MAX_CHANNELS {
+        return Err(fault(format!("{channels} channels; 1 to {MAX_CHANNELS} are read")));
+    }
     let mut samples = 0usize;
     for h in headers {
         if (h.layer_size.0, h.layer_size.1) != (width, height) {
             let (w, h) = (h.layer_size.0, h.layer_size.1);
             return Err(fault(format!("parts of different sizes ({width} x {height}, {w} x {h})")));
         }
-        let part = width.checked_mul(height).and_then(|n| n.checked_mul(h.channels.list.len()));
+        let part = width.checked_mul(height).and_then(|n| n.checked_mul(h.channels.list.len().max(1)));
         samples = part.and_then(|n| n.checked_add(samples)).unwrap_or(usize::MAX);
     }
     if samples > MAX_SAMPLES {

@@ -11,6 +11,31 @@
 //! EXR channels carry the ids of the table (`dfg.scale`); EXR sorts them by name, so readers look them up by name. PNG
 //! has no names: see [`png`] for the layouts.
 //!
+//! # Example
+//! ```
+//! use brdfbake::encode::{EncodeInput, Storage, encoder, quantise_table, read};
+//! use brdfbake::grid::{Axis, Channel, Grid, Quantity, Table, Texel};
+//!
+//! let mu = Quantity::find("mu").ok_or("no such quantity")?;
+//! let table = Table {
+//!     grid: Grid::new(vec![Axis::new(mu, 2, Texel::Center)])?,
+//!     channels: vec![Channel { id: "albedo".into(), meaning: "E(mu)".into(), range: [0.0, 1.0] }],
+//!     values: vec![0.1, 0.7],
+//!     errors: vec![0.0; 2],
+//!     evaluations: vec![1; 2],
+//! };
+//! let rounded = quantise_table(&table, Storage::Half)?;
+//! let bytes = encoder("exr").ok_or("no such container")?.encode(&EncodeInput {
+//!     grid: &table.grid,
+//!     channels: &table.channels,
+//!     values: &rounded.values,
+//!     storage: Storage::Half,
+//!     provenance_json: "{}",
+//! })?;
+//! assert_eq!(read::read_bytes(&bytes)?.channels[0].values, rounded.values);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # A new container
 //! One file, one `pub mod` line, one line in [`ENCODERS`].
 

@@ -7,7 +7,9 @@
 //! | 3 | RGB | in order |
 //! | 4 | RGBA | in order |
 //!
-//! Two channels are not grey with alpha: many programs multiply by alpha, or drop it.
+//! Two channels are not grey with alpha: many programs multiply by alpha, or drop it. With four channels there is no
+//! choice: a program that multiplies by alpha (OpenImageIO does, unless `oiio:UnassociatedAlpha` is set) reads three of
+//! them wrongly. EXR has no such trap.
 //!
 //! The samples are linear data: gAMA is 1 and there is no sRGB chunk. The provenance is an uncompressed iTXt chunk with
 //! the keyword `brdfbake`; it holds the ids and ranges of the channels, without which the codes mean nothing.

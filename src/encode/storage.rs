@@ -1,10 +1,10 @@
 //! How a value is stored: the bits of one number, apart from the container that holds them.
 //!
-//! Rounding is done once, here, straight from f64 and to the nearest even. It does not go through `half::f16::from_f64`:
-//! on x86 with F16C that crate rounds twice (f64 to f32 to half), and its portable path ignores the low 32 bits of the
-//! mantissa, so that a value just above a tie is rounded down. Both were found by `tests/encode.rs`.
+//! Rounding is done once, here, straight from f64 and to the nearest even. It does not go through `half::f16::from_f64`
+//! (2.7): on x86 with F16C that rounds twice (f64 to f32 to half), and its portable path ignores the low 32 bits of the
+//! mantissa. Either way 1 + 2^-11 + 2^-52, just above a tie, becomes 1 instead of 1 + 2^-10 (`tests/encode.rs`).
 //!
-//! A new storage is one variant, one entry in [`STORAGES`] and one [`Coding`]. A coding that couples the channels of a
+//! A new storage is one variant, one entry in [`STORAGES`] and one `Coding`. A coding that couples the channels of a
 //! texel (RGBD, RGB9E5) hooks into [`Storage::quantise_texel`].
 
 use crate::grid::Table;
@@ -112,6 +112,15 @@ impl Storage {
     ///
     /// `range` is the channel's; only a unorm uses it. A unorm takes a value beyond an end of its range by at most
     /// 1e-12 of the range for that end: the noise of sums in f64.
+    ///
+    /// Range: the stored numbers. Accuracy: exact, at most half a [`Storage::ulp`] from `value` (`tests/encode.rs`).
+    ///
+    /// ```
+    /// use brdfbake::encode::Storage;
+    /// assert_eq!(Storage::Half.quantise(0.1, [0.0, 1.0]), Ok(0.0999755859375));
+    /// assert!(Storage::Half.quantise(65520.0, [0.0, 1.0]).is_err());
+    /// assert!(Storage::Unorm16.quantise(1.0001, [0.0, 1.0]).is_err());
+    /// ```
     ///
     /// # Errors
     /// [`QuantiseError`] for a value without stored form; nothing is ever clamped.

@@ -1,0 +1,11 @@
+//! What a person reads: the contents of a file, the differences of two. Everything is returned as text; printing and
+//! colours are left to the caller.
+//!
+//! The room stands above `encode`, whose pictures and comparisons it puts into words.
+
+pub mod diff;
+pub mod inspect;
+pub mod text;
+
+pub use diff::diff;
+pub use inspect::inspect;

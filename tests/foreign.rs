@@ -1,0 +1,71 @@
+//! Files for other programs to read: see `tests/foreign/read_back.py`.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stderr, reason = "tests")]
+
+mod sample;
+
+use brdfbake::encode::read::read_file;
+use brdfbake::encode::{ENCODERS, quantise_table};
+use sample::{file, grid, hard, provenance, table};
+
+/// Writes one file of each kind, with what it must hold, for `tests/foreign/read_back.py`.
+#[test]
+#[ignore = "writes files for a foreign reader: BRDFBAKE_FOREIGN=<folder>"]
+fn write_for_foreign_readers() {
+    let folder = std::env::var_os("BRDFBAKE_FOREIGN").unwrap_or(env!("CARGO_TARGET_TMPDIR").into());
+    let folder = std::path::PathBuf::from(folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    let names = ["dfg.scale", "dfg.bias", "a", "z.cloth"];
+    assert_eq!(grid().len(), 35);
+    for encoder in ENCODERS {
+        for &storage in encoder.storages() {
+            for n in 1..=names.len() {
+                let t = table(&names[..n], hard(storage));
+                let p = provenance(&t, storage);
+                let values = quantise_table(&t, storage).unwrap().values;
+                let name = format!("{}-{n}.{}", storage.id(), encoder.extension());
+                std::fs::write(folder.join(&name), file(*encoder, &t, storage, &p)).unwrap();
+                let planes: serde_json::Map<_, _> = (0..n)
+                    .map(|c| {
+                        // As bits: Python reads them exactly, a negative zero included.
+                        let bits = |v: &f64| format!("{:016x}", v.to_bits());
+                        let column: Vec<String> = values.iter().skip(c).step_by(n).map(bits).collect();
+                        (names[c].to_owned(), column.into())
+                    })
+                    .collect();
+                let expected = serde_json::json!({"width": 7, "height": 5, "storage": storage.id(), "channels": planes,
+                    "brdfbake": serde_json::to_string(&p).unwrap()});
+                std::fs::write(folder.join(format!("{name}.expected.json")), expected.to_string()).unwrap();
+            }
+        }
+    }
+}
+
+/// Reads the files of `tests/foreign/write_out.py`.
+#[test]
+#[ignore = "reads files of foreign programs: BRDFBAKE_FOREIGN_IN=<folder>"]
+fn files_of_foreign_programs_are_read() {
+    let Some(folder) = std::env::var_os("BRDFBAKE_FOREIGN_IN") else {
+        eprintln!("skipped: BRDFBAKE_FOREIGN_IN is not set");
+        return;
+    };
+    let mut files = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let Some(picture) = path.to_str().and_then(|p| p.strip_suffix(".expected.json")) else { continue };
+        let expected: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+        let image = read_file(picture.as_ref()).unwrap_or_else(|e| panic!("{picture}: {e}"));
+        let size = [&expected["width"], &expected["height"]].map(|n| n.as_u64());
+        assert_eq!([image.width, image.height].map(|n| Some(n as u64)), size, "{picture}");
+        let channels = expected["channels"].as_object().unwrap();
+        assert_eq!(image.channels.len(), channels.len(), "{picture}");
+        for (name, column) in channels {
+            let plane = image.channel(name).unwrap_or_else(|| panic!("{picture}: no channel {name}"));
+            for (i, (got, bits)) in plane.values.iter().zip(column.as_array().unwrap()).enumerate() {
+                let want = f64::from_bits(u64::from_str_radix(bits.as_str().unwrap(), 16).unwrap());
+                assert!((got - want).abs() == 0.0, "{picture}: {name}[{i}] = {got}, expected {want}");
+            }
+        }
+        files += 1;
+    }
+    assert!(files > 0, "no file to read");
+}

@@ -1,0 +1,157 @@
+#!/usr/bin/env python3
+"""Reads files of brdfbake with the OpenEXR and OpenImageIO libraries and compares what they see.
+
+    pip install OpenEXR OpenImageIO numpy
+    BRDFBAKE_FOREIGN=/tmp/foreign cargo test --test foreign -- --ignored
+    python3 tests/foreign/read_back.py /tmp/foreign
+
+Every .exr and .png below the folder is read. Next to a file, `<name>.expected.json` (written by tests/foreign.rs) says
+which bits every channel must have; without it, the libraries are compared with each other and with the metadata in
+the file (size, channels, sample type), which is how the outputs of the command are checked.
+
+Exit code: 0 all agree, 1 a difference, 2 nothing to compare or a library is missing.
+"""
+
+import json
+import sys
+from pathlib import Path
+
+try:
+    import numpy as np
+    import OpenEXR
+    import OpenImageIO as oiio
+except ImportError as e:
+    print(f"{e}: pip install OpenEXR OpenImageIO numpy", file=sys.stderr)
+    sys.exit(2)
+
+ATTRIBUTE = "brdfbake"
+STORAGE = {"float16": "half", "float32": "float", "uint16": "unorm16"}
+
+
+class Difference(Exception):
+    """What two readers, or a reader and the expectation, do not agree on."""
+
+
+def same(what, got, expected):
+    if got != expected:
+        raise Difference(f"{what}: got {got!r}, expected {expected!r}")
+
+
+def openexr(path):
+    """Channels, metadata text and custom attributes as OpenEXR sees them."""
+    with OpenEXR.File(str(path), separate_channels=True) as f:
+        channels = {name: np.array(c.pixels) for name, c in f.channels().items()}
+        header = dict(f.header())
+    return channels, header.get(ATTRIBUTE), header
+
+
+def openimageio(path):
+    """Channels and metadata text as OpenImageIO sees them, in the type of the file."""
+    # The fourth channel is no opacity: without this OpenImageIO multiplies the other three by it.
+    config = oiio.ImageSpec()
+    config.attribute("oiio:UnassociatedAlpha", 1)
+    image = oiio.ImageInput.open(str(path), config)
+    if image is None:
+        raise Difference(f"OpenImageIO: {oiio.geterror()}")
+    spec = image.spec()
+    pixels = image.read_image(spec.format)
+    image.close()
+    if pixels is None:
+        raise Difference("OpenImageIO read no pixels")
+    pixels = np.asarray(pixels).reshape(spec.height, spec.width, spec.nchannels)
+    channels = {name: pixels[:, :, i] for i, name in enumerate(spec.channelnames)}
+    return channels, spec.getattribute(ATTRIBUTE), spec
+
+
+def bits(array):
+    """Bits of the values as f64: tells -0 from 0 and one NaN from another."""
+    return np.ascontiguousarray(array, dtype=np.float64).view(np.uint64)
+
+
+def exr(path):
+    """OpenEXR and OpenImageIO must see the same; returns values by channel and the metadata."""
+    a, text_a, header = openexr(path)
+    b, text_b, _ = openimageio(path)
+    same("channels of OpenEXR and OpenImageIO", sorted(b), sorted(a))
+    same("metadata of OpenEXR and OpenImageIO", text_b, text_a)
+    for name, values in a.items():
+        same(f"type of {name}", b[name].dtype, values.dtype)
+        if not np.array_equal(bits(values), bits(b[name])):
+            raise Difference(f"{name}: OpenEXR and OpenImageIO read different bits")
+    same("compression", header["compression"], OpenEXR.ZIP_COMPRESSION)
+    same("line order", header["lineOrder"], OpenEXR.INCREASING_Y)
+    return a, text_a
+
+
+def png(path):
+    """The codes of the channels that the metadata names, as values."""
+    codes, text, spec = openimageio(path)
+    same("bits", spec.get_int_attribute("oiio:BitsPerSample", 16), 16)
+    space = spec.getattribute("oiio:ColorSpace") or ""
+    same("linear colour space", space.startswith("lin"), True)
+    named = json.loads(text)["channels"]
+    samples = list(codes.values())
+    same("samples a pixel", len(samples), 3 if len(named) == 2 else len(named))
+    if len(named) == 2 and samples[2].any():
+        raise Difference("the blue of two channels is not empty")
+    values = {}
+    for channel, code in zip(named, samples):
+        same(f"type of {channel['id']}", str(code.dtype), "uint16")
+        lo, hi = channel["range"]
+        values[channel["id"]] = (lo + code.astype(np.float64) / 65535.0 * (hi - lo), "uint16")
+    return values, text
+
+
+def check(path):
+    if path.suffix == ".exr":
+        arrays, text = exr(path)
+        channels = {name: (values, str(values.dtype)) for name, values in arrays.items()}
+    else:
+        channels, text = png(path)
+    if text is None:
+        raise Difference("no metadata")
+    told = json.loads(text)
+    height, width = next(iter(channels.values()))[0].shape
+    lengths = [axis["len"] for axis in told["axes"]] + [1, 1, 1]
+    same("width", width, lengths[0])
+    same("height", height, int(np.prod(lengths[1:])))
+    same("channels", sorted(channels), sorted(c["id"] for c in told["channels"]))
+    for name, (values, dtype) in channels.items():
+        same(f"storage of {name}", STORAGE.get(dtype), told["encoding"]["storage"])
+        if not np.isfinite(values).all():
+            raise Difference(f"{name}: a value is not finite")
+    sidecar = path.with_name(path.name + ".expected.json")
+    if not sidecar.exists():
+        return "libraries and metadata agree"
+    expected = json.loads(sidecar.read_text(encoding="utf-8"))
+    same("metadata text", text, expected["brdfbake"])
+    same("width", width, expected["width"])
+    same("height", height, expected["height"])
+    for name, column in expected["channels"].items():
+        got = [f"{b:016x}" for b in bits(channels[name][0]).ravel()]
+        for i, (g, e) in enumerate(zip(got, column, strict=True)):
+            same(f"{name}, texel {i}", g, e)
+    return f"{len(expected['channels'])} channels, every bit as expected"
+
+
+def main():
+    if len(sys.argv) != 2:
+        print(__doc__, file=sys.stderr)
+        return 2
+    files = sorted(p for p in Path(sys.argv[1]).rglob("*") if p.suffix in (".exr", ".png"))
+    if not files:
+        print(f"no .exr or .png below {sys.argv[1]}", file=sys.stderr)
+        return 2
+    failed = 0
+    for path in files:
+        try:
+            print(f"ok   {path}: {check(path)}")
+        except (Difference, OSError, RuntimeError, ValueError, KeyError) as e:
+            failed += 1
+            print(f"FAIL {path}: {type(e).__name__}: {e}")
+    print(f"{len(files)} files, {failed} different")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
