@@ -9,6 +9,8 @@ mod fresnel;
 mod kelemen;
 #[path = "terms/microfacet.rs"]
 mod microfacet;
+#[path = "terms/sampling.rs"]
+mod sampling;
 #[path = "terms/schlick.rs"]
 mod schlick;
 #[path = "terms/values.rs"]
