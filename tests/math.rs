@@ -103,6 +103,29 @@ fn constants_and_small_helpers() {
     }
 }
 
+const COS_POW: [(f64, f64, f64); 7] = [
+    (1.5, 3.0, 0.000353951393082256071),
+    (1.25, 64.0, 8.323488518460171517e-33),
+    (0.75, 1.5, 0.6258779801004992159),
+    (0.125, 1000.0, 0.0003964620526476816555),
+    (0.0009765625, 1000000.0, 0.6207435570205716251),
+    (0.0009765625, 10000000.0, 0.008494194575538281551),
+    (1e-09, 10000000.0, 0.999999999995),
+];
+
+#[test]
+fn cosine_powers_keep_their_digits() {
+    // θ, n, cosⁿθ: mpmath, 50 digits.
+    for (theta, n, expected) in COS_POW {
+        let (sin, cos) = libm::sincos(theta);
+        let bound = 4e-16 * (1.0 - n * libm::log(cos));
+        assert_relative(&format!("cos^{n} {theta}"), special::cos_pow(cos, sin * sin, n), expected, bound);
+    }
+    assert_eq!(special::cos_pow(0.0, 1.0, 0.0), 1.0);
+    assert_eq!(special::cos_pow(0.0, 1.0, 2.5), 0.0);
+    assert_eq!(special::cos_pow(-0.5, 0.75, 3.0), 0.0);
+}
+
 #[test]
 fn neumaier_sum_keeps_what_a_plain_loop_loses() {
     assert_eq!(sum::compensated_sum([1.0, 1e100, 1.0, -1e100]), 2.0);

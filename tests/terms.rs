@@ -7,6 +7,8 @@
 mod fresnel;
 #[path = "terms/kelemen.rs"]
 mod kelemen;
+#[path = "terms/lobes.rs"]
+mod lobes;
 #[path = "terms/microfacet.rs"]
 mod microfacet;
 #[path = "terms/sampling.rs"]
