@@ -11,9 +11,13 @@ mod kelemen;
 mod lobes;
 #[path = "terms/microfacet.rs"]
 mod microfacet;
+#[path = "terms/phase.rs"]
+mod phase;
 #[path = "terms/sampling.rs"]
 mod sampling;
 #[path = "terms/schlick.rs"]
 mod schlick;
+#[path = "terms/sheen.rs"]
+mod sheen;
 #[path = "terms/values.rs"]
 mod values;

@@ -2,10 +2,13 @@
 
 pub mod beckmann;
 pub mod blinn_phong;
+pub mod charlie;
 pub mod fresnel;
 pub mod ggx;
 pub mod gtr;
 pub mod kelemen;
+pub mod phase;
 pub mod schlick;
 pub mod smith;
 pub mod vcavity;
+pub mod velvet;
