@@ -80,6 +80,8 @@ cites! {
     NEUBELT_PETTINEO_2013 = "NeubeltPettineo2013", "Neubelt, Pettineo: Crafting a Next-Gen Material Pipeline for The Order: 1886, SIGGRAPH course", 2013, "https://blog.selfshadow.com/publications/s2013-shading-course/";
     /// Neumaier, summation with a rounding error that does not grow with the number of terms.
     NEUMAIER_1974 = "Neumaier1974", "Neumaier: Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen, ZAMM 54", 1974, "https://doi.org/10.1002/zamm.19740540106";
+    /// Ribardiere and others, Student's t distribution of normals.
+    RIBARDIERE_2017 = "Ribardiere2017", "Ribardiere, Bringier, Meneveaux, Simonot: STD: Student's t-Distribution of Slopes for Microfacet Based BSDFs, CGF 36(2)", 2017, "https://doi.org/10.1111/cgf.13137";
     /// Schlick, the approximation of the Fresnel factor.
     SCHLICK_1994 = "Schlick1994", "Schlick: An Inexpensive BRDF Model for Physically-based Rendering, CGF 13(3)", 1994, "https://doi.org/10.1111/1467-8659.1330233";
     /// Vegdahl, better constants for the Laine-Karras hash.

@@ -19,5 +19,7 @@ mod sampling;
 mod schlick;
 #[path = "terms/sheen.rs"]
 mod sheen;
+#[path = "terms/student_t.rs"]
+mod student_t;
 #[path = "terms/values.rs"]
 mod values;

@@ -2,5 +2,6 @@
 
 pub mod double;
 pub mod frame;
+pub mod root;
 pub mod special;
 pub mod sum;

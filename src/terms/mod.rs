@@ -10,5 +10,6 @@ pub mod kelemen;
 pub mod phase;
 pub mod schlick;
 pub mod smith;
+pub mod student_t;
 pub mod vcavity;
 pub mod velvet;

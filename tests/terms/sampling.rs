@@ -44,7 +44,7 @@ fn samples_at_fixed_numbers_match_reference_values() {
 /// `∫ h(m) dωm` over normals, in slopes (x, y) = widths · stretched slopes, x along the azimuth of the stretched `w`.
 ///
 /// The half plane that faces `w` begins at x = −cot θ, so its edge is an end of the rule, not a kink inside it.
-fn integrate_facing(alpha: (f64, f64), w: DVec3, h: impl Fn(DVec3) -> f64) -> f64 {
+pub(crate) fn integrate_facing(alpha: (f64, f64), w: DVec3, h: impl Fn(DVec3) -> f64) -> f64 {
     let v = DVec3::new(alpha.0 * w.x, alpha.1 * w.y, w.z).normalize();
     let flat = frame::sin_theta(v);
     let (c, s) = if flat > 0.0 { (v.x / flat, v.y / flat) } else { (1.0, 0.0) };
@@ -105,11 +105,11 @@ fn projected_area_is_mu_times_1_plus_lambda() {
     }
 }
 
-fn moments(m: DVec3) -> [f64; 5] {
+pub(crate) fn moments(m: DVec3) -> [f64; 5] {
     [m.x, m.y, m.z, m.x * m.y, m.x * m.x]
 }
 
-fn assert_moments(what: &str, got: [ReplicateMean; 5], expected: impl Fn(usize) -> f64) {
+pub(crate) fn assert_moments(what: &str, got: [ReplicateMean; 5], expected: impl Fn(usize) -> f64) {
     for (i, estimate) in got.into_iter().enumerate() {
         let (error, sigma) = ((estimate.mean - expected(i)).abs(), estimate.standard_error);
         assert!(sigma < 2e-4, "{what}, moment {i}: {estimate:?}");
