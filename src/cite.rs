@@ -26,16 +26,18 @@ cites! {
     ASHIKHMIN_2000 = "Ashikhmin2000", "Ashikhmin, Premoze, Shirley: A Microfacet-Based BRDF Generator, SIGGRAPH", 2000, "https://doi.org/10.1145/344779.344814";
     /// Ashikhmin and Premoze, BRDFs that need nothing but a distribution.
     ASHIKHMIN_PREMOZE_2007 = "AshikhminPremoze2007", "Ashikhmin, Premoze: Distribution-based BRDFs, technical report, University of Utah", 2007, "https://www.cs.utah.edu/~premoze/dbrdf/";
+    /// Born and Wolf, the textbook of optics.
+    BORN_WOLF_1999 = "BornWolf1999", "Born, Wolf: Principles of Optics, 7th edition", 1999, "https://doi.org/10.1017/CBO9781139644181";
     /// Burley, the Disney principled model and its distributions.
     BURLEY_2012 = "Burley2012", "Burley: Physically-Based Shading at Disney, SIGGRAPH course", 2012, "https://blog.selfshadow.com/publications/s2012-shading-course/";
     /// Burley, Owen scrambling by hashing.
     BURLEY_2020 = "Burley2020", "Burley: Practical Hash-based Owen Scrambling, JCGT 9(4)", 2020, "https://jcgt.org/published/0009/04/01/";
     /// Cook and Torrance, the first microfacet model of graphics.
     COOK_TORRANCE_1982 = "CookTorrance1982", "Cook, Torrance: A Reflectance Model for Computer Graphics, ACM TOG 1(1)", 1982, "https://doi.org/10.1145/357290.357293";
-    /// d'Eon and Luebke, the skin chapter of GPU Gems 3.
-    DEON_LUEBKE_2007 = "DEonLuebke2007", "d'Eon, Luebke: Advanced Techniques for Realistic Real-Time Skin Rendering, GPU Gems 3 ch. 14", 2007, "https://developer.nvidia.com/gpugems/gpugems3/part-iii-rendering/chapter-14-advanced-techniques-realistic-real-time-skin";
     /// Dekker, products without rounding error.
     DEKKER_1971 = "Dekker1971", "Dekker: A Floating-Point Technique for Extending the Available Precision, Numerische Mathematik 18", 1971, "https://doi.org/10.1007/BF01397083";
+    /// d'Eon and Luebke, the skin chapter of GPU Gems 3.
+    DEON_LUEBKE_2007 = "DEonLuebke2007", "d'Eon, Luebke: Advanced Techniques for Realistic Real-Time Skin Rendering, GPU Gems 3 ch. 14", 2007, "https://developer.nvidia.com/gpugems/gpugems3/part-iii-rendering/chapter-14-advanced-techniques-realistic-real-time-skin";
     /// The NIST library of special functions.
     DLMF = "DLMF", "Olver and others (eds.): NIST Digital Library of Mathematical Functions", 2010, "https://dlmf.nist.gov/";
     /// Draine, scattering by interstellar dust.
@@ -74,8 +76,6 @@ cites! {
     LAINE_KARRAS_2011 = "LaineKarras2011", "Laine, Karras: Stratified Sampling for Stochastic Transparency, CGF 30(4)", 2011, "https://doi.org/10.1111/j.1467-8659.2011.01978.x";
     /// Lambert's Photometria.
     LAMBERT_1760 = "Lambert1760", "Lambert: Photometria", 1760, "https://archive.org/details/lambertsphotome00lambgoog";
-    /// Born and Wolf, the textbook of optics.
-    BORN_WOLF_1999 = "BornWolf1999", "Born, Wolf: Principles of Optics, 7th edition", 1999, "https://doi.org/10.1017/CBO9781139644181";
     /// Neubelt and Pettineo, cloth in a game.
     NEUBELT_PETTINEO_2013 = "NeubeltPettineo2013", "Neubelt, Pettineo: Crafting a Next-Gen Material Pipeline for The Order: 1886, SIGGRAPH course", 2013, "https://blog.selfshadow.com/publications/s2013-shading-course/";
     /// Neumaier, summation with a rounding error that does not grow with the number of terms.
