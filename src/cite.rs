@@ -22,22 +22,32 @@ macro_rules! cites {
 }
 
 cites! {
+    /// Ashikhmin and others, velvet and satin by arbitrary distributions of normals.
+    ASHIKHMIN_2000 = "Ashikhmin2000", "Ashikhmin, Premoze, Shirley: A Microfacet-Based BRDF Generator, SIGGRAPH", 2000, "https://doi.org/10.1145/344779.344814";
+    /// Ashikhmin and Premoze, BRDFs that need nothing but a distribution.
+    ASHIKHMIN_PREMOZE_2007 = "AshikhminPremoze2007", "Ashikhmin, Premoze: Distribution-based BRDFs, technical report, University of Utah", 2007, "https://www.cs.utah.edu/~premoze/dbrdf/";
+    /// Born and Wolf, the textbook of optics.
+    BORN_WOLF_1999 = "BornWolf1999", "Born, Wolf: Principles of Optics, 7th edition", 1999, "https://doi.org/10.1017/CBO9781139644181";
     /// Burley, the Disney principled model and its distributions.
     BURLEY_2012 = "Burley2012", "Burley: Physically-Based Shading at Disney, SIGGRAPH course", 2012, "https://blog.selfshadow.com/publications/s2012-shading-course/";
     /// Burley, Owen scrambling by hashing.
     BURLEY_2020 = "Burley2020", "Burley: Practical Hash-based Owen Scrambling, JCGT 9(4)", 2020, "https://jcgt.org/published/0009/04/01/";
     /// Cook and Torrance, the first microfacet model of graphics.
     COOK_TORRANCE_1982 = "CookTorrance1982", "Cook, Torrance: A Reflectance Model for Computer Graphics, ACM TOG 1(1)", 1982, "https://doi.org/10.1145/357290.357293";
-    /// d'Eon and Luebke, the skin chapter of GPU Gems 3.
-    DEON_LUEBKE_2007 = "DEonLuebke2007", "d'Eon, Luebke: Advanced Techniques for Realistic Real-Time Skin Rendering, GPU Gems 3 ch. 14", 2007, "https://developer.nvidia.com/gpugems/gpugems3/part-iii-rendering/chapter-14-advanced-techniques-realistic-real-time-skin";
     /// Dekker, products without rounding error.
     DEKKER_1971 = "Dekker1971", "Dekker: A Floating-Point Technique for Extending the Available Precision, Numerische Mathematik 18", 1971, "https://doi.org/10.1007/BF01397083";
+    /// d'Eon and Luebke, the skin chapter of GPU Gems 3.
+    DEON_LUEBKE_2007 = "DEonLuebke2007", "d'Eon, Luebke: Advanced Techniques for Realistic Real-Time Skin Rendering, GPU Gems 3 ch. 14", 2007, "https://developer.nvidia.com/gpugems/gpugems3/part-iii-rendering/chapter-14-advanced-techniques-realistic-real-time-skin";
     /// The NIST library of special functions.
     DLMF = "DLMF", "Olver and others (eds.): NIST Digital Library of Mathematical Functions", 2010, "https://dlmf.nist.gov/";
+    /// Draine, scattering by interstellar dust.
+    DRAINE_2003 = "Draine2003", "Draine: Scattering by Interstellar Dust Grains. I, Astrophysical Journal 598", 2003, "https://doi.org/10.1086/379118";
     /// Duntley, average reflectance of interfaces in diffuse light.
     DUNTLEY_1942 = "Duntley1942", "Duntley: The Optical Properties of Diffusing Materials, JOSA 32(2)", 1942, "https://doi.org/10.1364/JOSA.32.000061";
     /// Dupuy and Benyoub, visible normals of GGX as a spherical cap.
     DUPUY_BENYOUB_2023 = "DupuyBenyoub2023", "Dupuy, Benyoub: Sampling Visible GGX Normals with Spherical Caps, CGF 42(8)", 2023, "https://doi.org/10.1111/cgf.14867";
+    /// Estevez and Kulla, the sheen called Charlie.
+    ESTEVEZ_KULLA_2017 = "EstevezKulla2017", "Estevez, Kulla: Production Friendly Microfacet Sheen BRDF, SIGGRAPH course", 2017, "https://blog.selfshadow.com/publications/s2017-shading-course/";
     /// Hammersley, the finite point set.
     HAMMERSLEY_1960 = "Hammersley1960", "Hammersley: Monte Carlo Methods for Solving Multivariable Problems, Annals NYAS 86(3)", 1960, "https://doi.org/10.1111/j.1749-6632.1960.tb42846.x";
     /// Heitz, the review of masking-shadowing functions.
@@ -46,8 +56,12 @@ cites! {
     HEITZ_2018 = "Heitz2018", "Heitz: Sampling the GGX Distribution of Visible Normals, JCGT 7(4)", 2018, "https://jcgt.org/published/0007/04/01/";
     /// Heitz and d'Eon, sampling of visible normals.
     HEITZ_DEON_2014 = "HeitzDeon2014", "Heitz, d'Eon: Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals, CGF 33(4)", 2014, "https://doi.org/10.1111/cgf.12417";
+    /// Henyey and Greenstein, diffuse radiation in the galaxy.
+    HENYEY_GREENSTEIN_1941 = "HenyeyGreenstein1941", "Henyey, Greenstein: Diffuse Radiation in the Galaxy, Astrophysical Journal 93", 1941, "https://doi.org/10.1086/144246";
     /// Hoffman, Schlick's approximation reconsidered for metals.
     HOFFMAN_2019 = "Hoffman2019", "Hoffman: Fresnel Equations Considered Harmful, MAM workshop", 2019, "https://doi.org/10.2312/mam.20191305";
+    /// Jendersie and d'Eon, an approximate Mie phase function for fog and clouds.
+    JENDERSIE_DEON_2023 = "JendersieDEon2023", "Jendersie, d'Eon: An Approximate Mie Scattering Function for Fog and Cloud Rendering, SIGGRAPH talks", 2023, "https://doi.org/10.1145/3587421.3595409";
     /// Karis, split-sum environment lighting.
     KARIS_2013 = "Karis2013", "Karis: Real Shading in Unreal Engine 4, SIGGRAPH course", 2013, "https://blog.selfshadow.com/publications/s2013-shading-course/";
     /// Kelemen and Szirmay-Kalos, the coupled matte and specular model.
@@ -62,10 +76,12 @@ cites! {
     LAINE_KARRAS_2011 = "LaineKarras2011", "Laine, Karras: Stratified Sampling for Stochastic Transparency, CGF 30(4)", 2011, "https://doi.org/10.1111/j.1467-8659.2011.01978.x";
     /// Lambert's Photometria.
     LAMBERT_1760 = "Lambert1760", "Lambert: Photometria", 1760, "https://archive.org/details/lambertsphotome00lambgoog";
-    /// Born and Wolf, the textbook of optics.
-    BORN_WOLF_1999 = "BornWolf1999", "Born, Wolf: Principles of Optics, 7th edition", 1999, "https://doi.org/10.1017/CBO9781139644181";
+    /// Neubelt and Pettineo, cloth in a game.
+    NEUBELT_PETTINEO_2013 = "NeubeltPettineo2013", "Neubelt, Pettineo: Crafting a Next-Gen Material Pipeline for The Order: 1886, SIGGRAPH course", 2013, "https://blog.selfshadow.com/publications/s2013-shading-course/";
     /// Neumaier, summation with a rounding error that does not grow with the number of terms.
     NEUMAIER_1974 = "Neumaier1974", "Neumaier: Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen, ZAMM 54", 1974, "https://doi.org/10.1002/zamm.19740540106";
+    /// Ribardiere and others, Student's t distribution of normals.
+    RIBARDIERE_2017 = "Ribardiere2017", "Ribardiere, Bringier, Meneveaux, Simonot: STD: Student's t-Distribution of Slopes for Microfacet Based BSDFs, CGF 36(2)", 2017, "https://doi.org/10.1111/cgf.13137";
     /// Schlick, the approximation of the Fresnel factor.
     SCHLICK_1994 = "Schlick1994", "Schlick: An Inexpensive BRDF Model for Physically-based Rendering, CGF 13(3)", 1994, "https://doi.org/10.1111/1467-8659.1330233";
     /// Vegdahl, better constants for the Laine-Karras hash.

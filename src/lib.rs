@@ -14,7 +14,7 @@
 //! | 4 | [`tables`] | one file a bakeable table, their registry, and the one driver loop |
 //! | 5 | [`verify`] | one file a law; findings; `Verified` |
 //! | 6 | [`encode`] | one file a container; readers |
-//! | 7 | [[`report`]] | what a person reads: files and differences as text |
+//! | 7 | [`report`] | what a person reads: files and differences as text |
 //! | 7 | [`scene`] | what a glTF file needs |
 //! | 7 | [`recipe`] | preset files to a resolved plan |
 //! | 8 | [`pipeline`] | plan, bake, verify, encode, write |

@@ -2,7 +2,7 @@
 #![allow(clippy::float_cmp, reason = "exact results are asserted exactly")]
 #![allow(clippy::excessive_precision, reason = "reference values are quoted with all their digits")]
 
-use brdfbake::math::{frame, special, sum};
+use brdfbake::math::{frame, root, special, sum};
 use glam::DVec3;
 
 fn assert_relative(what: &str, got: f64, expected: f64, bound: f64) {
@@ -101,6 +101,63 @@ fn constants_and_small_helpers() {
         assert!((cos - c).abs() < 2e-15 && (sin - s).abs() < 2e-15, "u = {u}");
         assert_relative("cos² + sin²", cos * cos + sin * sin, 1.0, 4e-16);
     }
+}
+
+const COS_POW: [(f64, f64, f64); 7] = [
+    (1.5, 3.0, 0.000353951393082256071),
+    (1.25, 64.0, 8.323488518460171517e-33),
+    (0.75, 1.5, 0.6258779801004992159),
+    (0.125, 1000.0, 0.0003964620526476816555),
+    (0.0009765625, 1000000.0, 0.6207435570205716251),
+    (0.0009765625, 10000000.0, 0.008494194575538281551),
+    (1e-09, 10000000.0, 0.999999999995),
+];
+
+/// z, Γ(z + 1/2)/Γ(z): mpmath, 40 digits.
+const GAMMA_HALF: [(f64, f64); 10] = [
+    (0.5, 0.5641895835477562869),
+    (0.625, 0.6564868081748983472),
+    (1.0, 0.8862269254527580136),
+    (3.75, 1.873187169616183714),
+    (20.0, 4.444275161239915145),
+    (31.9, 5.625921011108650938),
+    (32.0, 5.634801160177469862),
+    (100.0, 9.987507861262518211),
+    (1e4, 99.99875000781298827),
+    (1e8, 9999.999987500000008),
+];
+
+#[test]
+fn ratios_of_gamma_functions_match_reference_values() {
+    for (z, expected) in GAMMA_HALF {
+        assert_relative(&format!("z = {z}"), special::gamma_half_ratio(z), expected, 1e-14);
+    }
+    assert_eq!(special::gamma_half_ratio(0.0), 0.0);
+}
+
+#[test]
+fn roots_of_rising_functions() {
+    let cube = |x: f64| (x * x * x - 2.0, 3.0 * x * x);
+    assert_relative("cube root", root::solve(0.0, 2.0, cube), 1.2599210498948731648, 3e-16);
+    // A flat start sends Newton out of the bracket; bisection brings it back.
+    let steep = |x: f64| {
+        (libm::tanh(50.0 * (x - 0.9)), 50.0 / libm::cosh(50.0 * (x - 0.9)) / libm::cosh(50.0 * (x - 0.9)))
+    };
+    assert_relative("tanh", root::solve(-1.0, 1.0, steep), 0.9, 1e-14);
+    assert_relative("one sign", root::solve(0.0, 1.0, |x| (x - 5.0, 1.0)), 1.0, 1e-14);
+}
+
+#[test]
+fn cosine_powers_keep_their_digits() {
+    // θ, n, cosⁿθ: mpmath, 50 digits.
+    for (theta, n, expected) in COS_POW {
+        let (sin, cos) = libm::sincos(theta);
+        let bound = 4e-16 * (1.0 - n * libm::log(cos));
+        assert_relative(&format!("cos^{n} {theta}"), special::cos_pow(cos, sin * sin, n), expected, bound);
+    }
+    assert_eq!(special::cos_pow(0.0, 1.0, 0.0), 1.0);
+    assert_eq!(special::cos_pow(0.0, 1.0, 2.5), 0.0);
+    assert_eq!(special::cos_pow(-0.5, 0.75, 3.0), 0.0);
 }
 
 #[test]

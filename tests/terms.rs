@@ -7,9 +7,19 @@
 mod fresnel;
 #[path = "terms/kelemen.rs"]
 mod kelemen;
+#[path = "terms/lobes.rs"]
+mod lobes;
 #[path = "terms/microfacet.rs"]
 mod microfacet;
+#[path = "terms/phase.rs"]
+mod phase;
+#[path = "terms/sampling.rs"]
+mod sampling;
 #[path = "terms/schlick.rs"]
 mod schlick;
+#[path = "terms/sheen.rs"]
+mod sheen;
+#[path = "terms/student_t.rs"]
+mod student_t;
 #[path = "terms/values.rs"]
 mod values;

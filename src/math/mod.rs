@@ -1,7 +1,8 @@
-//! Frames, special functions and sums; f64 throughout, transcendental functions from `libm` only.
+//! Frames, special functions, sums and root finding; f64 throughout, transcendental functions from `libm` only.
 
 pub mod double;
 pub mod frame;
 pub mod nearest;
+pub mod root;
 pub mod special;
 pub mod sum;

@@ -5,6 +5,7 @@
 
 use super::smith::{ALPHA_FLOOR, Ndf, normal_or_z};
 use crate::math::frame;
+use crate::math::root::solve;
 use crate::math::special::{self, FRAC_1_SQRT_PI, erfcx_tail};
 use glam::{DVec2, DVec3};
 use std::f64::consts::FRAC_1_PI;
@@ -137,27 +138,4 @@ impl Ndf for Beckmann {
         let (c, s) = if sin > 0.0 { (v.x / sin, v.y / sin) } else { (1.0, 0.0) };
         self.normal(DVec2::new(along * c - across * s, along * s + across * c))
     }
-}
-
-/// The root of an increasing function in [lo, hi]: Newton's method, bisecting whenever it leaves the bracket.
-///
-/// `f` gives value and derivative. Ends when a step no longer moves x, or after 100 steps; a function of one sign
-/// gives the end of the bracket where it is nearest to 0.
-fn solve(mut lo: f64, mut hi: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
-    let mut x = 0.5 * (lo + hi);
-    for _ in 0..100 {
-        let (value, slope) = f(x);
-        if value > 0.0 {
-            hi = x;
-        } else {
-            lo = x;
-        }
-        let newton = x - value / slope;
-        let next = if newton > lo && newton < hi { newton } else { 0.5 * (lo + hi) };
-        if (next - x).abs() <= f64::EPSILON * x.abs() {
-            return next;
-        }
-        x = next;
-    }
-    x
 }

@@ -121,6 +121,8 @@ impl Ndf for Ggx {
     ///
     /// Source: [Dupuy and Benyoub 2023](crate::cite::DUPUY_BENYOUB_2023) listing 3 (number recalled).
     /// Written so that 1 ± z are sums of positive terms: no digits are lost for `wo` at grazing.
+    /// Guard: within about 1e-15 of u2 = 1 c may be −v to the last bit; the normal is then one of the horizon, and may
+    /// face away from `wo` (density 0). Numbers of 32 bits do not get there.
     fn sample_visible(&self, wo: DVec3, u: DVec2) -> DVec3 {
         let v = normal_or_z(self.stretch(wo));
         let (cos, sin) = special::circle(u.x);
