@@ -15,7 +15,7 @@
 //! | 5 | [`verify`] | one file a law; findings; `Verified` |
 //! | 6 | [`encode`] | one file a container; readers |
 //! | 7 | [`report`] | what a person reads: files and differences as text |
-//! | 7 | [`scene`] | what a glTF file needs |
+//! | 6 | [`scene`] | what a glTF file needs; knows nothing of the rest |
 //! | 7 | [`recipe`] | preset files to a resolved plan |
 //! | 8 | [`pipeline`] | plan, bake, verify, encode, write |
 //! | 9 | `cli` | one file a verb (feature `cli`) |

@@ -14,7 +14,7 @@ const RANKS: &[(&str, u32)] = &[
     ("verify", 5),
     ("encode", 6),
     ("report", 7),
-    ("scene", 7),
+    ("scene", 6),
     ("recipe", 7),
     ("pipeline", 8),
     ("cli", 9),

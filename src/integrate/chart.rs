@@ -13,6 +13,9 @@ pub enum Chart {
         alpha: f64,
         /// D vanishes beyond `tan(theta) = reach * alpha`; infinite for a power-law tail.
         reach: f64,
+        /// True if the model has kinks inside the panels (V-cavity masking): convergence is then algebraic, and the
+        /// difference of two levels says less.
+        kinks: bool,
     },
     /// Polar round the normal in `wi`; see [`hemisphere`].
     Hemisphere,
@@ -22,7 +25,7 @@ impl Chart {
     /// Calls `visit` with batches of nodes at a refinement level (2 is coarse, 16 is full f64 accuracy).
     pub fn visit(&self, mu_o: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
         match *self {
-            Chart::HalfVector { alpha, reach } => half_vector::visit(mu_o, alpha, reach, level, visit),
+            Chart::HalfVector { alpha, reach, .. } => half_vector::visit(mu_o, alpha, reach, level, visit),
             Chart::Hemisphere => hemisphere::visit(mu_o, level, visit),
         }
     }
@@ -36,6 +39,7 @@ impl Chart {
     #[must_use]
     pub fn gain(&self, j: usize) -> f64 {
         let table = match self {
+            Chart::HalfVector { kinks: true, .. } => [0.2; 4],
             Chart::HalfVector { reach, .. } if reach.is_finite() => [0.3, 0.3, 0.3, 2.0],
             Chart::HalfVector { .. } => [1.0, 1.2, 1.4, 2.5],
             Chart::Hemisphere => [1.0; 4],

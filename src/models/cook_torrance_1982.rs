@@ -84,6 +84,6 @@ impl Brdf for CookTorrance {
     }
 
     fn chart(&self) -> Option<Chart> {
-        Some(Chart::HalfVector { alpha: self.alpha, reach: 6.5 })
+        Some(Chart::HalfVector { alpha: self.alpha, reach: 6.5, kinks: true })
     }
 }

@@ -107,7 +107,7 @@ impl<D: Distribution> Brdf for Microfacet<D> {
 
     fn chart(&self) -> Option<Chart> {
         let reach = self.distribution.reach();
-        self.distribution.alpha().map(|alpha| Chart::HalfVector { alpha, reach })
+        self.distribution.alpha().map(|alpha| Chart::HalfVector { alpha, reach, kinks: false })
     }
 
     fn eval_nodes(&self, nodes: &Nodes, out: &mut [f64; BATCH]) {
