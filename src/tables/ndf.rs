@@ -21,7 +21,7 @@ pub static INFO: TableInfo = TableInfo {
         Layout {
             id: "relative",
             doc: "D = texel / (pi alpha^2)",
-            channels: &[ChannelInfo { id: "ndf.relative", meaning: "pi alpha^2 D(mu_m)", range: [0.0, 1.0] }],
+            channels: &[ChannelInfo { id: "ndf.relative", meaning: "pi alpha^2 D(mu_m)", range: [0.0, 1.5] }],
         },
         Layout {
             id: "absolute",
@@ -33,7 +33,8 @@ pub static INFO: TableInfo = TableInfo {
     params: &[Param::choice("distribution", "which distribution", &["ggx", "beckmann"])],
     laws: &["finite", "range", "normalised"],
     axes: default_axes,
-    notes: "The peak has the width alpha: spread mu_m with `one-minus-power` (fine near mu_m = 1). At alpha -> 0 no fixed axis resolves it.",
+    notes: "The peak has the width alpha: spread mu_m with `one-minus-power` (fine near mu_m = 1). At alpha -> 0 no fixed axis resolves it. \
+        The relative form of Beckmann reaches 4 / e = 1.47 at alpha = 1, off the normal.",
     bind,
 };
 
