@@ -35,17 +35,29 @@ impl Graded {
     /// The rule of a panel of length 1 for the scale `eps > 0`.
     #[must_use]
     pub fn new(eps: f64, order: Order, level: f64) -> Graded {
+        let mut rule = Graded::empty();
+        rule.set(eps, order, level);
+        rule
+    }
+
+    /// A rule without nodes, to be [`set`](Graded::set).
+    #[must_use]
+    pub fn empty() -> Graded {
+        Graded { len: 0, node: [0.0; BATCH], weight: [0.0; BATCH] }
+    }
+
+    /// Makes this the rule of another scale, order and level, in place.
+    pub fn set(&mut self, eps: f64, order: Order, level: f64) {
         let ratio = 1.0 / eps.max(1e-300);
         let l = libm::asinh(ratio);
         let rule = gauss::rule(order.at(level, l));
-        let mut out = Graded { len: rule.nodes.len(), node: [0.0; BATCH], weight: [0.0; BATCH] };
+        self.len = rule.nodes.len();
         for (i, (&x, &w)) in rule.nodes.iter().zip(&rule.weights).enumerate() {
             // sinh and cosh from one expm1, without cancellation at small arguments.
             let m = libm::expm1(l * x);
             let inverse = 1.0 / (1.0 + m);
-            out.node[i] = 0.5 * m * (1.0 + inverse) / ratio;
-            out.weight[i] = 0.5 * (1.0 + m + inverse) * l * w / ratio;
+            self.node[i] = 0.5 * m * (1.0 + inverse) / ratio;
+            self.weight[i] = 0.5 * (1.0 + m + inverse) * l * w / ratio;
         }
-        out
     }
 }

@@ -56,6 +56,14 @@ impl Nodes {
         }
     }
 
+    /// Makes this an empty batch for another view cosine; the arrays are overwritten as they are filled.
+    pub fn reset(&mut self, mu_o: f64) {
+        self.len = 0;
+        self.panel = 0;
+        self.mu_o = mu_o;
+        self.sin_o = ((1.0 - mu_o) * (1.0 + mu_o)).max(0.0).sqrt();
+    }
+
     /// The view direction.
     #[must_use]
     pub fn wo(&self) -> DVec3 {

@@ -30,24 +30,52 @@ impl Functional {
         }
     }
 
-    /// Dot product of `values` with the weights, in fixed order.
-    fn sum(self, values: &[f64], cos_d: &[f64]) -> f64 {
+    /// The channel from the two sums that every functional is made of.
+    fn of(self, sums: Batch) -> f64 {
         match self {
-            Functional::One => values.iter().sum(),
-            Functional::Schlick => schlick_sum(values, cos_d),
-            Functional::SchlickComplement => values.iter().sum::<f64>() - schlick_sum(values, cos_d),
+            Functional::One => sums.one,
+            Functional::Schlick => sums.schlick,
+            Functional::SchlickComplement => sums.one - sums.schlick,
         }
     }
 }
 
-fn schlick_sum(values: &[f64], cos_d: &[f64]) -> f64 {
-    let mut sum = 0.0;
-    for (f, v) in values.iter().zip(cos_d) {
-        let m = 1.0 - v;
-        let m2 = m * m;
-        sum += f * (m2 * m2 * m);
+/// Sums of a batch: of the contributions, and of the contributions times (1 - v)^5.
+#[derive(Debug, Clone, Copy)]
+struct Batch {
+    one: f64,
+    schlick: f64,
+}
+
+/// Independent partial sums, so that additions need not wait for each other. The order is fixed.
+const LANES: usize = 4;
+
+impl Batch {
+    /// `values` are f; the contributions are f times weight times `mu_i`.
+    fn new(values: &[f64; BATCH], nodes: &Nodes) -> Batch {
+        let n = nodes.len;
+        let (mut one, mut schlick) = ([0.0; LANES], [0.0; LANES]);
+        let whole = n - n % LANES;
+        let mut add = |lane: usize, i: usize| {
+            let f = values[i] * (nodes.weight[i] * nodes.mu_i[i]);
+            let m = 1.0 - nodes.cos_d[i];
+            let m2 = m * m;
+            one[lane] += f;
+            schlick[lane] += f * (m2 * m2 * m);
+        };
+        for i in (0..whole).step_by(LANES) {
+            for lane in 0..LANES {
+                add(lane, i + lane);
+            }
+        }
+        for i in whole..n {
+            add(i - whole, i);
+        }
+        Batch {
+            one: (one[0] + one[1]) + (one[2] + one[3]),
+            schlick: (schlick[0] + schlick[1]) + (schlick[2] + schlick[3]),
+        }
     }
-    sum
 }
 
 /// Integrates the functionals of a model at a view cosine to an absolute tolerance.
@@ -77,13 +105,10 @@ pub fn integrate(
     let chart = model.chart().ok_or(TexelError::NoChart { model: id })?;
     let mut values = [0.0; BATCH];
     let mut add = |nodes: &Nodes, sums: &mut Sums| {
-        let n = nodes.len;
         model.eval_nodes(nodes, &mut values);
-        for i in 0..n {
-            values[i] *= nodes.weight[i] * nodes.mu_i[i];
-        }
+        let batch = Batch::new(&values, nodes);
         for (s, g) in sums.iter_mut().zip(functionals) {
-            *s += g.sum(&values[..n], &nodes.cos_d[..n]);
+            *s += g.of(batch);
         }
     };
     finite(ladder::integrate(&chart, mu_o, functionals.len(), tolerance, &mut add), functionals.len())
