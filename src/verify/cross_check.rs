@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3};
 pub static LAW: Law = Law {
     id: "cross-check",
     statement: "the baked value agrees with sampling at scrambled Sobol points",
-    margin: "6 standard errors plus the error estimate minus the difference, smallest of 12 texels",
+    margin: "6 standard errors, plus 2 / N for tails that N draws miss, plus the error estimate, minus the difference; smallest of 12 texels",
     code: 2004,
     check,
 };
@@ -21,6 +21,10 @@ pub static LAW: Law = Law {
 /// Scramblings, and points in each.
 const REPLICATES: u32 = 16;
 const POINTS: u32 = 512;
+
+/// What N draws may have missed: tails that are hit less than once in N, with weights of about 1, do not show in the
+/// standard error (at alpha = 0.002 the rays lost at the horizon are three in a million).
+const UNSEEN: f64 = 2.0 / (REPLICATES * POINTS) as f64;
 
 /// Texels that are checked.
 const TEXELS: usize = 12;
@@ -79,7 +83,7 @@ fn check(case: &Case<'_>) -> Outcome {
             let [s] = estimate(&*model, mu, [g], 0x51ed + i as u64, REPLICATES, POINTS);
             let k = texel * case.table.channels.len() + c;
             let (v, e) = (case.table.values[k], case.table.errors[k]);
-            outcome.tighten(6.0 * s.standard_error + e + 1e-6 - (v - s.mean).abs(), || {
+            outcome.tighten(6.0 * s.standard_error + e + UNSEEN - (v - s.mean).abs(), || {
                 format!(
                     "{} = {v:.6} against {:.6} +- {:.1e}, {}",
                     channel.id,
