@@ -16,7 +16,7 @@
 //! | 6 | `encode` | one file a container; readers |
 //! | 6 | `report` | findings and provenance as text and JSON |
 //! | 7 | [`scene`] | what a glTF file needs |
-//! | 7 | `recipe` | preset files to a resolved plan |
+//! | 7 | [`recipe`] | preset files to a resolved plan |
 //! | 8 | `pipeline` | plan, bake, verify, encode, write |
 //! | 9 | `cli` | one file a verb (feature `cli`) |
 
@@ -25,6 +25,7 @@ pub mod grid;
 pub mod integrate;
 pub mod math;
 pub mod models;
+pub mod recipe;
 pub mod scene;
 pub mod tables;
 pub mod terms;
