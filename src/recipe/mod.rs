@@ -84,6 +84,8 @@ pub use load::{LoadError, load};
 pub use plan::{Output, Plan, PlanError, PlannedTable, TableRequest};
 pub use preset::{PRESETS, Preset, preset};
 
+use std::sync::LazyLock;
+
 /// Most bytes of a recipe file.
 pub const MAX_BYTES: usize = 1 << 20;
 /// Most tables of a recipe.
@@ -92,12 +94,12 @@ pub const MAX_TABLES: usize = 256;
 pub const TOLERANCE: [f64; 2] = [1e-12, 0.1];
 
 /// A container and what it can store.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Format {
     /// Container id: `exr`.
     pub container: &'static str,
     /// Its storages.
-    pub storages: &'static [Stored],
+    pub storages: Vec<Stored>,
 }
 
 /// A storage.
@@ -107,21 +109,23 @@ pub struct Stored {
     pub id: &'static str,
     /// Half a step near 1: the default tolerance.
     pub half_step: f64,
-    /// True if it encodes the range of the channel, which must then be finite.
+    /// True if it spreads its steps over the range of the channel.
     pub bounded: bool,
 }
-
-const HALF: Stored = Stored { id: "half", half_step: 1.0 / 4096.0, bounded: false };
-const FLOAT: Stored = Stored { id: "float", half_step: 1.0 / 33_554_432.0, bounded: false };
-const UNORM16: Stored = Stored { id: "unorm16", half_step: 0.5 / 65535.0, bounded: true };
 
 /// The containers and storages that a recipe can name.
 #[must_use]
 pub fn formats() -> &'static [Format] {
-    &[
-        Format { container: "exr", storages: &[HALF, FLOAT] },
-        Format { container: "png", storages: &[UNORM16] },
-    ]
+    static FORMATS: LazyLock<Vec<Format>> = LazyLock::new(|| {
+        let half = Stored { id: "half", half_step: 1.0 / 4096.0, bounded: false };
+        let float = Stored { id: "float", half_step: 1.0 / 33_554_432.0, bounded: false };
+        let unorm16 = Stored { id: "unorm16", half_step: 0.5 / 65535.0, bounded: true };
+        vec![
+            Format { container: "exr", storages: vec![half, float] },
+            Format { container: "png", storages: vec![unorm16] },
+        ]
+    });
+    &FORMATS
 }
 
 /// Reads a recipe. `file_name` is used in messages only.
