@@ -45,7 +45,7 @@ pub(super) fn table(table: &PlannedTable) -> Json {
 /// Parameters of the model, then of the kind, without those that an axis sweeps.
 fn params(table: &PlannedTable) -> Json {
     let spec = &table.bound.spec;
-    let swept = spec.swept();
+    let swept: Vec<&str> = spec.grid.axes().iter().map(|a| a.quantity.base_id()).collect();
     let mut map = Map::new();
     let model = spec.model.iter().map(|(info, params)| (info.params, params));
     for (declared, params) in model.chain([(spec.kind.params, &spec.params)]) {

@@ -136,11 +136,11 @@ pub enum Fault {
         /// What there is.
         allowed: String,
     },
-    /// A storage for values without bounds that needs bounds.
-    #[error("{storage} cannot store channel {channel}, whose range is [{}, {}]", number(.range[0]), number(.range[1]))]
-    Unbounded {
+    /// A storage that spreads its steps over the range of a channel, and a channel with a very wide range.
+    #[error("{storage} cannot store channel {channel}: its range is too wide")]
+    WideRange {
         /// Storage id.
-        storage: String,
+        storage: &'static str,
         /// Channel id.
         channel: &'static str,
         /// Range of the channel.
@@ -234,7 +234,7 @@ impl Fault {
             Fault::WarpForm { .. } => {
                 "write { power = p }, { one-minus-power = p } or { coupled = \"alpha\", power = 2.0, scale = 1.0, exponent = 1.0 }"
             }
-            Fault::Unbounded { .. } => "store it as half or float, or take a layout with bounded channels",
+            Fault::WideRange { .. } => "store it as half or float, or take a layout with bounded channels",
             Fault::SweptRange { .. } => "give the axis a domain inside that range",
             Fault::SplitFresnel { .. } => "leave it out; the shader applies F0 and F90",
             Fault::Bind(e) => bind_remedy(e)?,

@@ -84,6 +84,9 @@ pub use load::{LoadError, load};
 pub use plan::{Output, Plan, PlanError, PlannedTable, TableRequest};
 pub use preset::{PRESETS, Preset, preset};
 
+use crate::encode::{ENCODERS, Storage};
+use std::sync::LazyLock;
+
 /// Most bytes of a recipe file.
 pub const MAX_BYTES: usize = 1 << 20;
 /// Most tables of a recipe.
@@ -92,12 +95,12 @@ pub const MAX_TABLES: usize = 256;
 pub const TOLERANCE: [f64; 2] = [1e-12, 0.1];
 
 /// A container and what it can store.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Format {
     /// Container id: `exr`.
     pub container: &'static str,
     /// Its storages.
-    pub storages: &'static [Stored],
+    pub storages: Vec<Stored>,
 }
 
 /// A storage.
@@ -107,21 +110,22 @@ pub struct Stored {
     pub id: &'static str,
     /// Half a step near 1: the default tolerance.
     pub half_step: f64,
-    /// True if it encodes the range of the channel, which must then be finite.
+    /// True if it spreads its steps over the range of the channel.
     pub bounded: bool,
 }
 
-const HALF: Stored = Stored { id: "half", half_step: 1.0 / 4096.0, bounded: false };
-const FLOAT: Stored = Stored { id: "float", half_step: 1.0 / 33_554_432.0, bounded: false };
-const UNORM16: Stored = Stored { id: "unorm16", half_step: 0.5 / 65535.0, bounded: true };
-
-/// The containers and storages that a recipe can name.
+/// The containers and storages that a recipe can name: those of the registry of encoders.
 #[must_use]
 pub fn formats() -> &'static [Format] {
-    &[
-        Format { container: "exr", storages: &[HALF, FLOAT] },
-        Format { container: "png", storages: &[UNORM16] },
-    ]
+    static FORMATS: LazyLock<Vec<Format>> = LazyLock::new(|| {
+        let stored =
+            |s: &Storage| Stored { id: s.id(), half_step: s.default_tolerance(), bounded: s.is_bounded() };
+        ENCODERS
+            .iter()
+            .map(|e| Format { container: e.id(), storages: e.storages().iter().map(stored).collect() })
+            .collect()
+    });
+    &FORMATS
 }
 
 /// Reads a recipe. `file_name` is used in messages only.
@@ -144,8 +148,4 @@ pub fn parse(source: &str, file_name: &str) -> Result<Plan, RecipeError> {
         Some(plan) if faults.is_empty() => Ok(plan),
         _ => Err(diagnostic::locate(source, file_name, &span::Spans::of(&root), faults)),
     }
-}
-/// tmp
-pub fn from_scene(_n: &str, _needs: &crate::scene::Needs) -> Result<Plan, PlanError> {
-    Plan::from_requests("x", vec![])
 }

@@ -9,7 +9,7 @@ use super::{Format, Stored, TOLERANCE, formats, name};
 use crate::grid::provenance::Waiver;
 use crate::tables::driver::OnMiss;
 use crate::tables::spec::Request;
-use crate::tables::{Bound, TableInfo};
+use crate::tables::{Bound, ChannelInfo, TableInfo};
 use crate::verify;
 use serde_json::Value as Json;
 use std::collections::HashSet;
@@ -331,14 +331,14 @@ fn storage(format: &'static Format, id: &str) -> Option<&'static Stored> {
     format.storages.iter().find(|s| s.id == id)
 }
 
-/// A storage that encodes a range needs channels that have one.
+/// A storage that spreads its steps over the range of a channel must have a step that is of use.
 fn check_storable(entry: &Entry, bound: &Bound, stored: &[Option<&'static Stored>], faults: &mut Faults) {
-    let infinite = |c: &&crate::tables::ChannelInfo| !c.range.iter().all(|r| r.is_finite());
-    let Some(channel) = bound.spec.layout.channels.iter().find(infinite) else { return };
     for (i, stored) in stored.iter().enumerate() {
-        if let Some(stored) = stored.filter(|s| s.bounded) {
-            let fault =
-                Fault::Unbounded { storage: stored.id.to_owned(), channel: channel.id, range: channel.range };
+        let Some(stored) = stored.filter(|s| s.bounded) else { continue };
+        let half_step = |c: &&ChannelInfo| stored.half_step * (c.range[1] - c.range[0]);
+        let wide = |c: &&ChannelInfo| half_step(c).is_nan() || half_step(c) > TOLERANCE[1];
+        if let Some(channel) = bound.spec.layout.channels.iter().find(wide) {
+            let fault = Fault::WideRange { storage: stored.id, channel: channel.id, range: channel.range };
             faults.value(format!("{}.outputs[{i}]", entry.path), fault);
         }
     }
