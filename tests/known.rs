@@ -5,6 +5,7 @@ use brdfbake::math::frame;
 use brdfbake::models::{MODELS, ModelInfo, Params, Quantity};
 use brdfbake::tables::integral::{Functional, integrate};
 use serde_json::{Map, Value};
+use std::f64::consts::TAU;
 
 fn params(info: &'static ModelInfo, set: &[(&str, &str)]) -> Params {
     let map: Map<String, Value> =
@@ -59,7 +60,7 @@ fn every_model_holds_the_laws_that_it_claims() {
             let set: &[(&str, &str)] = if has_alpha { &[("alpha", alpha)] } else { &[] };
             let model = (info.build)(&params(info, set)).unwrap();
             for _ in 0..200 {
-                let mut direction = || frame::spherical(1.55 * seeds.unit(), 6.28 * seeds.unit());
+                let mut direction = || frame::spherical(1.55 * seeds.unit(), TAU * seeds.unit());
                 let (a, b) = (direction(), direction());
                 let (forth, back) = (model.eval(a, b), model.eval(b, a));
                 assert!(forth.is_finite() && forth >= 0.0, "{} alpha {alpha}: f = {forth}", info.id);

@@ -41,7 +41,7 @@ impl Chart {
         let table = match self {
             Chart::HalfVector { kinks: true, .. } => [0.2; 4],
             Chart::HalfVector { reach, .. } if reach.is_finite() => [0.3, 0.3, 0.3, 2.0],
-            Chart::HalfVector { .. } => [1.0, 1.2, 1.4, 2.5],
+            Chart::HalfVector { .. } => [0.3, 0.8, 0.9, 2.0],
             Chart::Hemisphere => [1.0; 4],
         };
         table[j.clamp(1, table.len()) - 1]
