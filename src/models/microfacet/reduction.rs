@@ -35,7 +35,7 @@ pub(super) fn white_ggx(mu: f64, alpha: f64, masking: Masking, tolerance: f64) -
     }
     // three levels are summed at least
     let first = match tolerance {
-        t if t >= 1e-6 => 0,
+        t if t >= 1e-5 => 0,
         t if t >= 1e-9 => 1,
         _ => 2,
     };
