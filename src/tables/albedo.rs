@@ -46,7 +46,6 @@ impl Baker for Albedo {
     }
 
     fn rule(&self) -> String {
-        "one-dimensional reduction where the model has one, else product Gauss-Legendre in its chart"
-            .to_owned()
+        format!("one-dimensional reduction where the model has one; else {}", self.sweep.rule())
     }
 }

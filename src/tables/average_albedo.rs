@@ -52,8 +52,10 @@ impl Baker for AverageAlbedo {
     }
 
     fn rule(&self) -> String {
-        "Gauss-Legendre in mu graded at alpha, over directional albedos integrated to a quarter of the tolerance"
-            .to_owned()
+        format!(
+            "Gauss-Legendre in mu graded at alpha, over albedos to a quarter of the tolerance ({})",
+            self.sweep.rule()
+        )
     }
 }
 

@@ -85,6 +85,6 @@ impl Baker for Dfg {
     }
 
     fn rule(&self) -> String {
-        "product Gauss-Legendre in the model's chart, level raised until two levels agree".to_owned()
+        self.sweep.rule()
     }
 }

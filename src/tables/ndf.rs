@@ -56,10 +56,9 @@ struct Ndf {
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
-    let at = |id| spec.grid.axes().iter().position(|a| a.quantity.base_id() == id).unwrap_or(0);
     Ok(Box::new(Ndf {
-        mu: at("mu_m"),
-        alpha: at("alpha"),
+        mu: spec.coordinate("mu_m")?,
+        alpha: spec.coordinate("alpha")?,
         beckmann: spec.params.choice("distribution") == "beckmann",
         relative: spec.layout.id == "relative",
     }))

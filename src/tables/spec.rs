@@ -194,11 +194,34 @@ impl Spec {
         ids
     }
 
+    /// Number of the axis that sweeps a quantity, itself or through a derived one.
+    #[must_use]
+    pub fn axis(&self, base_id: &str) -> Option<usize> {
+        self.grid.axes().iter().position(|a| a.quantity.base_id() == base_id)
+    }
+
+    /// Number of the axis of a coordinate that the kind must have.
+    ///
+    /// # Errors
+    /// [`BindError::MissingAxis`].
+    pub fn coordinate(&self, base_id: &'static str) -> Result<usize, BindError> {
+        let got = || axis_ids(&self.grid);
+        self.axis(base_id).ok_or_else(|| BindError::MissingAxis {
+            kind: self.kind.id,
+            needed: base_id,
+            got: got(),
+        })
+    }
+
     /// Channels of the layout.
     #[must_use]
     pub fn channels(&self) -> Vec<Channel> {
         self.layout.channels.iter().map(super::ChannelInfo::channel).collect()
     }
+}
+
+fn axis_ids(grid: &Grid) -> String {
+    grid.axes().iter().map(|a| a.quantity.id).collect::<Vec<_>>().join(", ")
 }
 
 fn borrowed(map: &Map<String, Json>) -> impl Iterator<Item = (&str, &Json)> {
@@ -227,7 +250,7 @@ fn check_axes(
     let bases: Vec<&'static str> = grid.axes().iter().map(|a| a.quantity.base_id()).collect();
     for needed in kind.coordinates {
         if !bases.contains(needed) {
-            let got = grid.axes().iter().map(|a| a.quantity.id).collect::<Vec<_>>().join(", ");
+            let got = axis_ids(grid);
             return Err(BindError::MissingAxis { kind: kind.id, needed, got });
         }
     }

@@ -68,6 +68,13 @@ impl Sweep {
         params
     }
 
+    /// The rule that integrates the model, in words.
+    #[must_use]
+    pub fn rule(&self) -> String {
+        let chart = (self.info.build)(&self.params).ok().and_then(|m| m.chart());
+        chart.map_or("none: the model has no chart", |c| c.name()).to_owned()
+    }
+
     /// The model at a point.
     ///
     /// # Errors

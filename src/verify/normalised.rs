@@ -18,7 +18,7 @@ const BOUND: f64 = 1e-10;
 fn check(case: &Case<'_>) -> Outcome {
     let spec = &case.bound.spec;
     let grid = &spec.grid;
-    let Some(axis) = grid.axes().iter().position(|a| a.quantity.base_id() == "alpha") else {
+    let Some(axis) = spec.axis("alpha") else {
         return Outcome::vacuous("no width axis");
     };
     let beckmann = spec.params.choice("distribution") == "beckmann";
