@@ -26,12 +26,22 @@ cites! {
     ASHIKHMIN_2000 = "Ashikhmin2000", "Ashikhmin, Premoze, Shirley: A Microfacet-Based BRDF Generator, SIGGRAPH", 2000, "https://doi.org/10.1145/344779.344814";
     /// Ashikhmin and Premoze, BRDFs that need nothing but a distribution.
     ASHIKHMIN_PREMOZE_2007 = "AshikhminPremoze2007", "Ashikhmin, Premoze: Distribution-based BRDFs, technical report, University of Utah", 2007, "https://www.cs.utah.edu/~premoze/dbrdf/";
+    /// Ashikhmin and Shirley, an anisotropic Phong model.
+    ASHIKHMIN_SHIRLEY_2000 = "AshikhminShirley2000", "Ashikhmin, Shirley: An Anisotropic Phong BRDF Model, journal of graphics tools 5(2)", 2000, "https://doi.org/10.1080/10867651.2000.10487522";
+    /// Belcour and Barla, thin films in colour.
+    BELCOUR_BARLA_2017 = "BelcourBarla2017", "Belcour, Barla: A Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence, ACM TOG 36(4)", 2017, "https://doi.org/10.1145/3072959.3073620";
     /// Born and Wolf, the textbook of optics.
     BORN_WOLF_1999 = "BornWolf1999", "Born, Wolf: Principles of Optics, 7th edition", 1999, "https://doi.org/10.1017/CBO9781139644181";
     /// Burley, the Disney principled model and its distributions.
     BURLEY_2012 = "Burley2012", "Burley: Physically-Based Shading at Disney, SIGGRAPH course", 2012, "https://blog.selfshadow.com/publications/s2012-shading-course/";
     /// Burley, Owen scrambling by hashing.
     BURLEY_2020 = "Burley2020", "Burley: Practical Hash-based Owen Scrambling, JCGT 9(4)", 2020, "https://jcgt.org/published/0009/04/01/";
+    /// Chandrasekhar, the textbook of radiative transfer.
+    CHANDRASEKHAR_1960 = "Chandrasekhar1960", "Chandrasekhar: Radiative Transfer, Dover", 1960, "https://openlibrary.org/isbn/0486605906";
+    /// Chiang and others, subsurface scattering in production.
+    CHIANG_2016 = "Chiang2016", "Chiang, Kutz, Burley: Practical and Controllable Subsurface Scattering for Production Path Tracing, SIGGRAPH talks", 2016, "https://doi.org/10.1145/2897839.2927433";
+    /// Christensen and Burley, normalised diffusion.
+    CHRISTENSEN_BURLEY_2015 = "ChristensenBurley2015", "Christensen, Burley: Approximate Reflectance Profiles for Efficient Subsurface Scattering, Pixar memo 15-04", 2015, "https://graphics.pixar.com/library/ApproxBSSRDF/";
     /// Cook and Torrance, the first microfacet model of graphics.
     COOK_TORRANCE_1982 = "CookTorrance1982", "Cook, Torrance: A Reflectance Model for Computer Graphics, ACM TOG 1(1)", 1982, "https://doi.org/10.1145/357290.357293";
     /// Dekker, products without rounding error.
@@ -48,20 +58,36 @@ cites! {
     DUPUY_BENYOUB_2023 = "DupuyBenyoub2023", "Dupuy, Benyoub: Sampling Visible GGX Normals with Spherical Caps, CGF 42(8)", 2023, "https://doi.org/10.1111/cgf.14867";
     /// Estevez and Kulla, the sheen called Charlie.
     ESTEVEZ_KULLA_2017 = "EstevezKulla2017", "Estevez, Kulla: Production Friendly Microfacet Sheen BRDF, SIGGRAPH course", 2017, "https://blog.selfshadow.com/publications/s2017-shading-course/";
+    /// Fdez-Aguera, multiple scattering with split sums.
+    FDEZ_AGUERA_2019 = "FdezAguera2019", "Fdez-Aguera: A Multiple-Scattering Microfacet Model for Real-Time Image-based Lighting, JCGT 8(1)", 2019, "https://jcgt.org/published/0008/01/03/";
+    /// Gulbrandsen, metals for artists.
+    GULBRANDSEN_2014 = "Gulbrandsen2014", "Gulbrandsen: Artist Friendly Metallic Fresnel, JCGT 3(4)", 2014, "https://jcgt.org/published/0003/04/03/";
     /// Hammersley, the finite point set.
     HAMMERSLEY_1960 = "Hammersley1960", "Hammersley: Monte Carlo Methods for Solving Multivariable Problems, Annals NYAS 86(3)", 1960, "https://doi.org/10.1111/j.1749-6632.1960.tb42846.x";
     /// Heitz, the review of masking-shadowing functions.
     HEITZ_2014 = "Heitz2014", "Heitz: Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs, JCGT 3(2)", 2014, "https://jcgt.org/published/0003/02/03/";
+    /// Heitz and others, the SGGX microflakes.
+    HEITZ_2015 = "Heitz2015", "Heitz, Dupuy, Crassin, Dachsbacher: The SGGX Microflake Distribution, ACM TOG 34(4)", 2015, "https://doi.org/10.1145/2766988";
+    /// Heitz and others, linearly transformed cosines.
+    HEITZ_2016 = "Heitz2016", "Heitz, Dupuy, Hill, Neubelt: Real-Time Polygonal-Light Shading with Linearly Transformed Cosines, ACM TOG 35(4)", 2016, "https://doi.org/10.1145/2897824.2925895";
     /// Heitz, sampling of GGX visible normals.
     HEITZ_2018 = "Heitz2018", "Heitz: Sampling the GGX Distribution of Visible Normals, JCGT 7(4)", 2018, "https://jcgt.org/published/0007/04/01/";
     /// Heitz and d'Eon, sampling of visible normals.
     HEITZ_DEON_2014 = "HeitzDeon2014", "Heitz, d'Eon: Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals, CGF 33(4)", 2014, "https://doi.org/10.1111/cgf.12417";
     /// Henyey and Greenstein, diffuse radiation in the galaxy.
     HENYEY_GREENSTEIN_1941 = "HenyeyGreenstein1941", "Henyey, Greenstein: Diffuse Radiation in the Galaxy, Astrophysical Journal 93", 1941, "https://doi.org/10.1086/144246";
+    /// Hill, energy compensation explained.
+    HILL_2018 = "Hill2018", "Hill: A Multi-Faceted Exploration, part 2", 2018, "https://blog.selfshadow.com/2018/06/04/multi-faceted-part-2/";
     /// Hoffman, Schlick's approximation reconsidered for metals.
     HOFFMAN_2019 = "Hoffman2019", "Hoffman: Fresnel Equations Considered Harmful, MAM workshop", 2019, "https://doi.org/10.2312/mam.20191305";
     /// Jendersie and d'Eon, an approximate Mie phase function for fog and clouds.
     JENDERSIE_DEON_2023 = "JendersieDEon2023", "Jendersie, d'Eon: An Approximate Mie Scattering Function for Fog and Cloud Rendering, SIGGRAPH talks", 2023, "https://doi.org/10.1145/3587421.3595409";
+    /// Jensen and others, the dipole.
+    JENSEN_2001 = "Jensen2001", "Jensen, Marschner, Levoy, Hanrahan: A Practical Model for Subsurface Light Transport, SIGGRAPH", 2001, "https://doi.org/10.1145/383259.383319";
+    /// Jensen and Buhler, the dipole in a hierarchy.
+    JENSEN_2002 = "Jensen2002", "Jensen, Buhler: A Rapid Hierarchical Rendering Technique for Translucent Materials, SIGGRAPH", 2002, "https://doi.org/10.1145/566654.566619";
+    /// Jimenez and others, light through ears.
+    JIMENEZ_2010 = "Jimenez2010", "Jimenez, Whelan, Sundstedt, Gutierrez: Real-Time Realistic Skin Translucency, IEEE CG&A 30(4)", 2010, "https://doi.org/10.1109/MCG.2010.39";
     /// Karis, split-sum environment lighting.
     KARIS_2013 = "Karis2013", "Karis: Real Shading in Unreal Engine 4, SIGGRAPH course", 2013, "https://blog.selfshadow.com/publications/s2013-shading-course/";
     /// Kelemen and Szirmay-Kalos, the coupled matte and specular model.
@@ -76,16 +102,36 @@ cites! {
     LAINE_KARRAS_2011 = "LaineKarras2011", "Laine, Karras: Stratified Sampling for Stochastic Transparency, CGF 30(4)", 2011, "https://doi.org/10.1111/j.1467-8659.2011.01978.x";
     /// Lambert's Photometria.
     LAMBERT_1760 = "Lambert1760", "Lambert: Photometria", 1760, "https://archive.org/details/lambertsphotome00lambgoog";
+    /// Lazanyi and Szirmay-Kalos, Schlick's factor for metals.
+    LAZANYI_2005 = "Lazanyi2005", "Lazanyi, Szirmay-Kalos: Fresnel Term Approximations for Metals, WSCG short papers", 2005, "http://hdl.handle.net/11025/11214";
+    /// Lindbloom, matrices of colour spaces.
+    LINDBLOOM = "Lindbloom", "Lindbloom: RGB/XYZ Matrices", 2017, "http://www.brucelindbloom.com/index.html?Eqn_RGB_XYZ_Matrix.html";
     /// Neubelt and Pettineo, cloth in a game.
     NEUBELT_PETTINEO_2013 = "NeubeltPettineo2013", "Neubelt, Pettineo: Crafting a Next-Gen Material Pipeline for The Order: 1886, SIGGRAPH course", 2013, "https://blog.selfshadow.com/publications/s2013-shading-course/";
     /// Neumaier, summation with a rounding error that does not grow with the number of terms.
     NEUMAIER_1974 = "Neumaier1974", "Neumaier: Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen, ZAMM 54", 1974, "https://doi.org/10.1002/zamm.19740540106";
+    /// Olano and Baker, normal maps that filter.
+    OLANO_BAKER_2010 = "OlanoBaker2010", "Olano, Baker: LEAN Mapping, I3D", 2010, "https://doi.org/10.1145/1730804.1730834";
+    /// Planck, the law of black bodies.
+    PLANCK_1901 = "Planck1901", "Planck: Ueber das Gesetz der Energieverteilung im Normalspectrum, Annalen der Physik 309(3)", 1901, "https://doi.org/10.1002/andp.19013090310";
     /// Ribardiere and others, Student's t distribution of normals.
     RIBARDIERE_2017 = "Ribardiere2017", "Ribardiere, Bringier, Meneveaux, Simonot: STD: Student's t-Distribution of Slopes for Microfacet Based BSDFs, CGF 36(2)", 2017, "https://doi.org/10.1111/cgf.13137";
     /// Schlick, the approximation of the Fresnel factor.
     SCHLICK_1994 = "Schlick1994", "Schlick: An Inexpensive BRDF Model for Physically-based Rendering, CGF 13(3)", 1994, "https://doi.org/10.1111/1467-8659.1330233";
+    /// Toksvig, gloss from shortened normals.
+    TOKSVIG_2005 = "Toksvig2005", "Toksvig: Mipmapping Normal Maps, journal of graphics tools 10(3)", 2005, "https://doi.org/10.1080/2151237X.2005.10129203";
+    /// Tokuyoshi and Kaplanyan, specular antialiasing.
+    TOKUYOSHI_KAPLANYAN_2019 = "TokuyoshiKaplanyan2019", "Tokuyoshi, Kaplanyan: Improved Geometric Specular Antialiasing, I3D", 2019, "https://doi.org/10.1145/3306131.3317683";
+    /// Torrance and Sparrow, facets in grooves.
+    TORRANCE_SPARROW_1967 = "TorranceSparrow1967", "Torrance, Sparrow: Theory for Off-Specular Reflection From Roughened Surfaces, JOSA 57(9)", 1967, "https://doi.org/10.1364/JOSA.57.001105";
+    /// Turquin, compensation by one albedo.
+    TURQUIN_2019 = "Turquin2019", "Turquin: Practical Multiple Scattering Compensation for Microfacet Models", 2019, "https://blog.selfshadow.com/publications/turquin/ms_comp_final.pdf";
     /// Vegdahl, better constants for the Laine-Karras hash.
     VEGDAHL_2021 = "Vegdahl2021", "Vegdahl: Building a Better LK Hash", 2021, "https://psychopath.io/post/2021_01_30_building_a_better_lk_hash";
     /// Walter and others, rough dielectrics and GGX.
     WALTER_2007 = "Walter2007", "Walter, Marschner, Li, Torrance: Microfacet Models for Refraction through Rough Surfaces, EGSR", 2007, "https://doi.org/10.2312/EGWR/EGSR07/195-206";
+    /// Wyman and others, colour matching in closed form.
+    WYMAN_2013 = "Wyman2013", "Wyman, Sloan, Shirley: Simple Analytic Approximations to the CIE XYZ Color Matching Functions, JCGT 2(2)", 2013, "https://jcgt.org/published/0002/02/01/";
+    /// Zeltner and others, sheen by transformed cosines.
+    ZELTNER_2022 = "Zeltner2022", "Zeltner, Burley, Chiang: Practical Multiple-Scattering Sheen Using Linearly Transformed Cosines, SIGGRAPH talks", 2022, "https://doi.org/10.1145/3532836.3536240";
 }

@@ -11,6 +11,7 @@
 //! | 2 | [`integrate`] | quadrature rules and charts of the hemisphere; knows no BRDF |
 //! | 2 | [`terms`] | D, F, G of the papers in closed form |
 //! | 3 | [`models`] | one file a reflectance model, and their registry |
+//! | 4 | [`functions`] | the terms as functions with ids, for evaluation by name |
 //! | 4 | [`tables`] | one file a bakeable table, their registry, and the one driver loop |
 //! | 5 | [`verify`] | one file a law; findings; `Verified` |
 //! | 6 | [`encode`] | one file a container; readers |
@@ -24,6 +25,7 @@ pub mod cite;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod encode;
+pub mod functions;
 pub mod grid;
 pub mod integrate;
 pub mod math;

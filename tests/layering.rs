@@ -10,6 +10,7 @@ const RANKS: &[(&str, u32)] = &[
     ("integrate", 2),
     ("terms", 2),
     ("models", 3),
+    ("functions", 4),
     ("tables", 4),
     ("verify", 5),
     ("encode", 6),

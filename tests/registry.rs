@@ -1,6 +1,7 @@
 //! The registries are complete and consistent: one file an entry, ids in kebab-case, sources with equation numbers.
 #![allow(clippy::unwrap_used, reason = "test")]
 
+use brdfbake::functions;
 use brdfbake::grid::Quantity;
 use brdfbake::models::{Kind, MODELS, Param, Preset};
 use brdfbake::tables::{ModelUse, TABLES};
@@ -65,6 +66,26 @@ fn models_are_complete() {
         }
         if m.splits {
             assert!(["f0", "f90"].iter().all(|id| m.params.iter().any(|p| p.id == *id)), "{}: f0, f90", m.id);
+        }
+    }
+}
+
+#[test]
+fn functions_are_complete() {
+    let ids: BTreeSet<&str> = functions::all().map(|f| f.id).collect();
+    assert_eq!(ids.len(), functions::all().count(), "an id is used twice");
+    assert_eq!(functions::FAMILIES.len(), entries("functions", "pub static ALL: &[FunctionInfo]").len());
+    for f in functions::all() {
+        check_id(f.id);
+        check_params(f.id, f.params);
+        assert!(!f.sources.is_empty() && f.sources.iter().all(|s| !s.1.is_empty()), "{}: sources", f.id);
+        assert!(!f.known.is_empty(), "{}: no known value", f.id);
+        assert!([f.title, f.formula, f.notes, f.unit].iter().all(|t| !t.is_empty()), "{}: a text", f.id);
+        assert!(f.range[0] < f.range[1], "{}: range", f.id);
+        for a in f.also {
+            for (key, _) in a.set {
+                assert!(f.params.iter().any(|p| p.id == *key), "{}: {} implies {key}", f.id, a.name);
+            }
         }
     }
 }

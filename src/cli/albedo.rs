@@ -92,7 +92,7 @@ pub(super) fn build(
     given: &Map<String, Json>,
 ) -> Result<(&'static models::ModelInfo, Box<dyn models::Brdf>), Failure> {
     let (info, implied) = models::find(name).ok_or_else(|| unknown_model(name))?;
-    let implied: Map<String, Json> = implied.iter().map(|(k, v)| ((*k).to_owned(), Json::from(*v))).collect();
+    let implied = models::implied_values(implied);
     let all = implied.iter().chain(given).map(|(k, v)| (k.as_str(), v));
     let params = Params::resolve(info.id, info.params, all).map_err(Failure::input)?;
     Ok((info, (info.build)(&params).map_err(Failure::input)?))

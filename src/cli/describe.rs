@@ -1,6 +1,7 @@
-//! `brdfbake describe ID`: everything that the registries know of a model, table, preset, law or quantity.
+//! `brdfbake describe ID`: everything that the registries know of a model, function, table, preset, law or quantity.
 
 use super::{Exit, Failure, output};
+use crate::functions::{self, FunctionInfo};
 use crate::grid::Quantity;
 use crate::models::{self, Kind, ModelInfo, Param, Preset};
 use crate::recipe::PRESETS;
@@ -10,7 +11,7 @@ use crate::verify;
 /// Arguments of `describe`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Id of a model, table, preset, law or quantity.
+    /// Id of a model, function, table, preset, law or quantity.
     id: String,
 }
 
@@ -22,6 +23,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let id = args.id.as_str();
     let mut parts = Vec::new();
     parts.extend(models::find(id).map(|(m, _)| model(m)));
+    parts.extend(functions::find(id).map(|(f, _)| function(f)));
     parts.extend(tables::find(id).map(table));
     parts.extend(
         PRESETS.iter().find(|p| p.id == id).map(|p| format!("preset {}\n{}\n\n{}", p.id, p.doc, p.source)),
@@ -30,14 +32,14 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     parts.extend(Quantity::find(id).map(quantity));
     if parts.is_empty() {
         let ids = || {
-            let models = models::MODELS.iter().map(|m| m.id);
+            let models = models::MODELS.iter().map(|m| m.id).chain(functions::all().map(|f| f.id));
             let tables = tables::TABLES.iter().map(|t| t.id);
             models.chain(tables).chain(PRESETS.iter().map(|p| p.id)).chain(verify::LAWS.iter().map(|l| l.id))
         };
         let hint = crate::math::nearest::nearest(id, ids())
             .map_or_else(String::new, |n| format!("; did you mean `{n}`?"));
         return Err(Failure::input(format!(
-            "nothing is called `{id}`{hint} `brdfbake list models` lists the models"
+            "nothing is called `{id}`{hint}; `brdfbake list models` and `list functions` list what there is"
         )));
     }
     output::data(&parts.join("\n"));
@@ -65,12 +67,34 @@ pub fn model(m: &ModelInfo) -> String {
         let names: Vec<&str> = m.also.iter().map(|a| a.name).collect();
         text.push_str(&format!("also called: {}\n", names.join(", ")));
     }
-    text.push_str("known values:\n");
-    for k in m.known {
-        let set: Vec<String> = k.params.iter().map(|(a, b)| format!("{a} = {b}")).collect();
-        text.push_str(&format!("  {:?} at {}: {:.15} ({})\n", k.what, set.join(", "), k.value, k.source));
-    }
+    text.push_str(&known(m.known));
     text.push_str(&sources(&m.source_lines()));
+    text
+}
+
+/// The page of a function.
+#[must_use]
+pub fn function(f: &FunctionInfo) -> String {
+    let mut text = format!("function {}\n{}\n\n  {}\n\n", f.id, f.title, f.formula);
+    text.push_str(&params(f.params));
+    let inputs: Vec<String> = f
+        .inputs
+        .iter()
+        .map(|i| i.columns())
+        .map(|(columns, meaning)| format!("{} = {meaning}", columns.join(", ")))
+        .collect();
+    let inputs =
+        if inputs.is_empty() { "none; the columns may be blank".to_owned() } else { inputs.join("; ") };
+    text.push_str(&format!("angles: {inputs}\n"));
+    let bound = |v: f64| if v.abs() < f64::MAX { v.to_string() } else { "infinity".to_owned() };
+    text.push_str(&format!("value: in [{}, {}], unit {}\n", bound(f.range[0]), bound(f.range[1]), f.unit));
+    text.push_str(&format!("notes: {}\n", f.notes));
+    if !f.also.is_empty() {
+        let names: Vec<&str> = f.also.iter().map(|a| a.name).collect();
+        text.push_str(&format!("also called: {}\n", names.join(", ")));
+    }
+    text.push_str(&known(f.known));
+    text.push_str(&sources(&f.source_lines()));
     text
 }
 
@@ -142,6 +166,15 @@ fn params(params: &[Param]) -> String {
             Kind::Choice(words) => format!("{}; default {}", words.join(" | "), words.first().unwrap_or(&"")),
         };
         text.push_str(&format!("  {} ({range}): {}\n", p.id, p.doc));
+    }
+    text
+}
+
+fn known(values: &[models::Known]) -> String {
+    let mut text = "known values:\n".to_owned();
+    for k in values {
+        let set: Vec<String> = k.params.iter().map(|(a, b)| format!("{a} = {b}")).collect();
+        text.push_str(&format!("  {:?} at {}: {:.15} ({})\n", k.what, set.join(", "), k.value, k.source));
     }
     text
 }

@@ -1,10 +1,12 @@
 //! `brdfbake eval`: reads `model,params_json,wi_theta,wi_phi,wo_theta,wo_phi` as CSV and appends `value`.
 //!
-//! Angles are in radians. The value is f in 1/sr without the cosine; 0 where a direction is at or below the horizon.
+//! `model` names a model or a function (`list models`, `list functions`); text after its first space is a remark. Angles
+//! are in radians. The value of a model is f in 1/sr without the cosine, 0 where a direction is at or below the horizon; a
+//! function says what it reads from the angle columns (`describe ID`), and columns that it does not read may be blank.
 //! Other columns are passed through.
 
-use super::{Exit, Failure, albedo, output};
-use crate::math::frame;
+use super::{Exit, Failure, output};
+use crate::functions::{Angles, EvalError, Subject};
 use serde_json::{Map, Value as Json};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -20,8 +22,6 @@ pub struct Args {
 }
 
 const COLUMNS: [&str; 6] = ["model", "params_json", "wi_theta", "wi_phi", "wo_theta", "wo_phi"];
-
-type Built = (&'static crate::models::ModelInfo, Box<dyn crate::models::Brdf>);
 
 /// Runs it.
 ///
@@ -47,7 +47,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let fault = |e: csv::Error| Failure::new(Exit::Internal, e);
     writer.write_record(headers.iter().chain([args.column.as_str()])).map_err(fault)?;
-    let mut cache: HashMap<(String, String), Built> = HashMap::new();
+    let mut cache: HashMap<(String, String), Subject> = HashMap::new();
     for record in reader.records() {
         let record = record.map_err(|e| Failure::input(format!("{name}: {e}")))?;
         let line = record.position().map_or(0, csv::Position::line);
@@ -63,7 +63,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 fn evaluate(
     record: &csv::StringRecord,
     columns: &[usize; 6],
-    cache: &mut HashMap<(String, String), Built>,
+    cache: &mut HashMap<(String, String), Subject>,
 ) -> Result<f64, Failure> {
     let field = |i: usize| record.get(columns[i]).unwrap_or("").trim();
     let key = (field(0).to_owned(), field(1).to_owned());
@@ -74,26 +74,20 @@ fn evaluate(
             serde_json::from_str(&key.1)
                 .map_err(|e| Failure::input(format!("params_json: {e}: {}", key.1)))?
         };
-        cache.insert(key.clone(), albedo::build(&key.0, &params)?);
+        cache.insert(key.clone(), Subject::new(&key.0, &params).map_err(Failure::input)?);
     }
-    let Some((info, model)) = cache.get(&key) else { return Err(Failure::new(Exit::Internal, "cache")) };
-    if model.mirror(1.0).is_some() {
-        return Err(Failure::new(
-            Exit::Unsupported,
-            format!(
-                "{} with these parameters is a mirror: its reflection is a delta in direction, which has no value",
-                info.id
-            ),
-        ));
-    }
+    let Some(subject) = cache.get(&key) else { return Err(Failure::new(Exit::Internal, "cache")) };
     let angle = |i: usize| {
         let text = field(i);
         match text.parse::<f64>() {
-            Ok(v) if v.is_finite() => Ok(v),
+            Ok(v) if v.is_finite() => Ok(Some(v)),
+            _ if text.is_empty() => Ok(None),
             _ => Err(Failure::input(format!("{} = `{text}` is not a finite number (radians)", COLUMNS[i]))),
         }
     };
-    let wi = frame::spherical(angle(2)?, angle(3)?);
-    let wo = frame::spherical(angle(4)?, angle(5)?);
-    Ok(model.eval(wo, wi))
+    let (wi_theta, wi_phi, wo_theta, wo_phi) = (angle(2)?, angle(3)?, angle(4)?, angle(5)?);
+    subject.value(&Angles { wi_theta, wi_phi, wo_theta, wo_phi }).map_err(|e| match e {
+        EvalError::Delta { .. } => Failure::new(Exit::Unsupported, e),
+        _ => Failure::input(e),
+    })
 }

@@ -2,6 +2,7 @@
 
 use super::{Exit, Failure, output};
 use crate::encode::ENCODERS;
+use crate::functions;
 use crate::grid::quantity::QUANTITIES;
 use crate::models::MODELS;
 use crate::recipe::PRESETS;
@@ -13,6 +14,8 @@ use crate::verify::LAWS;
 pub enum What {
     /// Reflectance models.
     Models,
+    /// Functions: distributions, masking, Fresnel factors, phase functions, profiles, samplers.
+    Functions,
     /// Table kinds.
     Tables,
     /// Recipes that come with the program.
@@ -58,6 +61,7 @@ fn rows(what: What) -> Vec<(String, String)> {
     let row = |id: &str, text: &str| (id.to_owned(), text.to_owned());
     match what {
         What::Models => MODELS.iter().map(|m| row(m.id, m.title)).collect(),
+        What::Functions => functions::all().map(|f| row(f.id, f.title)).collect(),
         What::Tables => TABLES.iter().map(|t| row(t.id, t.title)).collect(),
         What::Presets => PRESETS.iter().map(|p| row(p.id, p.doc)).collect(),
         What::Formats => ENCODERS

@@ -33,13 +33,13 @@ enum Verb {
     Inspect(inspect::Args),
     /// Compare two images or two output folders.
     Diff(diff::Args),
-    /// Evaluate models at directions read as CSV; append the value.
+    /// Evaluate models and functions at directions read as CSV; append the value.
     Eval(eval::Args),
     /// Print the directional albedo of a model with its error estimate.
     Albedo(albedo::Args),
-    /// List models, tables, presets, formats, laws or quantities.
+    /// List models, functions, tables, presets, formats, laws or quantities.
     List(list::Args),
-    /// Describe a model, table, preset, law or quantity.
+    /// Describe a model, function, table, preset, law or quantity.
     Describe(describe::Args),
 }
 

@@ -1,5 +1,6 @@
 //! Frames, special functions, sums and root finding; f64 throughout, transcendental functions from `libm` only.
 
+pub mod complex;
 pub mod double;
 pub mod frame;
 pub mod nearest;

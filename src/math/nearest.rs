@@ -11,6 +11,15 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|(_, c)| c)
 }
 
+/// Up to `most` candidates that are near enough to `word` to be slips, nearest first.
+pub fn few<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>, most: usize) -> Vec<&'a str> {
+    let limit = 1 + word.chars().count() / 3;
+    let mut near: Vec<(usize, &str)> =
+        candidates.into_iter().map(|c| (distance(word, c), c)).filter(|(d, _)| *d <= limit).collect();
+    near.sort_by_key(|(d, _)| *d);
+    near.into_iter().take(most).map(|(_, c)| c).collect()
+}
+
 /// Levenshtein distance, case ignored, with `-` and `_` alike.
 fn distance(a: &str, b: &str) -> usize {
     let fold = |s: &str| s.to_lowercase().replace('_', "-").chars().collect::<Vec<char>>();

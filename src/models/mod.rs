@@ -150,6 +150,13 @@ pub struct ModelInfo {
 /// Parameters that a name implies.
 pub type Implied = &'static [(&'static str, &'static str)];
 
+/// Implied parameters as JSON: numbers where they parse as such, else words.
+#[must_use]
+pub fn implied_values(implied: Implied) -> serde_json::Map<String, serde_json::Value> {
+    let json = |text: &str| text.parse::<f64>().map_or_else(|_| text.into(), serde_json::Value::from);
+    implied.iter().map(|(key, text)| ((*key).to_owned(), json(text))).collect()
+}
+
 /// Finds a model by id or by another name. The second part are the parameters that the name implies.
 #[must_use]
 pub fn find(name: &str) -> Option<(&'static ModelInfo, Implied)> {

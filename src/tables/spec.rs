@@ -138,8 +138,7 @@ impl Request {
         let params = Params::resolve(kind.id, kind.params, borrowed(&table_params))?;
         let model = match model {
             Some((info, implied)) => {
-                let implied: Map<String, Json> =
-                    implied.iter().map(|(k, v)| ((*k).to_owned(), Json::from(*v))).collect();
+                let implied = models::implied_values(implied);
                 let all = borrowed(&implied).chain(borrowed(&model_params));
                 Some((info, Params::resolve(info.id, info.params, all)?))
             }

@@ -16,6 +16,22 @@ pub fn visibility(wo: DVec3, wi: DVec3) -> f64 {
     if length_squared > 0.0 { 1.0 / length_squared } else { 0.0 }
 }
 
+/// What the texture encodes, `PH(u, m) = exp(−tan²θ/m²)/(m² u⁴)`: π times Beckmann's D.
+///
+/// Source, guard: as [`encode`]. Range: ≥ 0; finite for m ≥ 1e-150. Accuracy: relative 1e-14 + 4e-16 tan²θ/m²
+/// (`tests/functions.rs`).
+#[must_use]
+pub fn distribution(u: f64, m: f64) -> f64 {
+    if u <= 0.0 || m <= 0.0 {
+        return 0.0;
+    }
+    let u = u.min(1.0);
+    let tan_over_m = ((1.0 - u) * (1.0 + u)).sqrt() / u / m;
+    let exponent = tan_over_m * tan_over_m;
+    // Before the division: u⁴ may underflow.
+    if exponent < 746.0 { libm::exp(-exponent) / (m * m * u * u * u * u) } else { 0.0 }
+}
+
 /// The value of a texel, `0.5 PH(u, m)^0.1`, before quantisation and not clipped.
 ///
 /// `u = cos θ_h` (columns), `m` = Beckmann's α (rows). Logarithmic:

@@ -1,15 +1,31 @@
 //! The factors of the papers (D, Lambda, G1, G2, Fresnel) in closed, cancellation-free form.
 
 pub mod beckmann;
+pub mod blackbody;
 pub mod blinn_phong;
+pub mod burley_diffusion;
 pub mod charlie;
+pub mod clearcoat;
+pub mod dipole;
 pub mod fresnel;
 pub mod ggx;
 pub mod gtr;
+pub mod gulbrandsen;
 pub mod kelemen;
+pub mod lazanyi;
+pub mod ltc;
+pub mod ltc_sheen;
+pub mod medium;
+pub mod multiple_scattering;
+pub mod normal_filtering;
 pub mod phase;
 pub mod schlick;
+pub mod schlick_masking;
+pub mod sggx;
+pub mod skin;
+pub mod skin_specular;
 pub mod smith;
 pub mod student_t;
+pub mod thin_film;
 pub mod vcavity;
 pub mod velvet;

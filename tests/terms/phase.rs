@@ -125,3 +125,42 @@ fn samples_invert_the_integral_and_stay_in_range() {
         assert!((below - u).abs() < 1e-14, "u = {u} gives cos {cos}, below it {below}");
     }
 }
+
+#[test]
+fn draine_and_fog_samples_have_their_integral() {
+    for g in [-0.9, -0.2, 0.0, 1e-9, 0.05, 0.29, 0.31, 0.5, 0.9, 0.99] {
+        for alpha in [0.0, 0.5, 1.0, 50.0] {
+            for u in [0.0, 0.01, 0.3, 0.5, 0.8, 0.999] {
+                let cos = phase::sample_draine(g, alpha, u);
+                // ∫₋₁^cos, graded at the peak
+                let p = |c: f64| 2.0 * PI * phase::draine(g, alpha, c);
+                let width: f64 = (1.0 - g.abs()) * (1.0 - g.abs()) + 1e-12;
+                let peak = g.signum();
+                let graded = |from: f64, to: f64| {
+                    let (a, b) = ((from - peak).abs(), (to - peak).abs());
+                    let (ta, tb) = (libm::log1p(a / width), libm::log1p(b / width));
+                    (gauss::rule(128).integrate(ta.min(tb), ta.max(tb), |t| {
+                        width * libm::exp(t) * p(peak - peak * width * libm::expm1(t))
+                    })) * (to - from).signum()
+                };
+                let got = graded(-1.0, cos);
+                assert!((got - u).abs() < 1e-11, "g {g} alpha {alpha} u {u}: cos {cos}, integral {got}");
+            }
+            let same = phase::sample_draine(g, 0.0, 0.37) - phase::sample_henyey_greenstein(g, 0.37);
+            assert!(same.abs() < 1e-13, "alpha = 0 is Henyey-Greenstein");
+        }
+    }
+    // the mixture: mean cosine over a fine grid of both numbers
+    let mean = sphere(1e-4, |x| (1.0 - x) * phase::fog(10.0, 1.0 - x));
+    let n = 512;
+    let mut sum = 0.0;
+    for i in 0..n {
+        for j in 0..n {
+            let u =
+                glam::DVec2::new((f64::from(i) + 0.5) / f64::from(n), (f64::from(j) + 0.5) / f64::from(n));
+            sum += phase::sample_fog(10.0, u);
+        }
+    }
+    let got = sum / f64::from(n) / f64::from(n);
+    assert!((got - mean).abs() < 2e-3, "{got} {mean}");
+}
