@@ -333,3 +333,30 @@ fn lists_and_descriptions_come_from_the_registries() {
         assert!(code(&o) == 0 && out(&o).contains(m.formula), "{}", m.id);
     }
 }
+
+#[test]
+fn plots_are_drawn_as_svg_and_png() {
+    let dir = folder();
+    let (svg, png) = (dir.path().join("lobe.svg"), dir.path().join("lobe.png"));
+    let o = brdfbake(&["plot", "ggx", "-p", "alpha=0.3", "-o", text(&svg), "-o", text(&png)]);
+    assert_eq!(code(&o), 0, "{}", err(&o));
+    let drawn = std::fs::read_to_string(&svg).unwrap();
+    // f at 60 degrees in the mirror direction: D / (4 mu^2) G2 with D = 1 / (pi alpha^2), in the caption
+    assert!(drawn.contains("<polyline") && drawn.contains("60 deg: largest f"), "no curve");
+    let image = brdfbake::encode::read::read_file(&png).unwrap();
+    assert!(image.channels.iter().any(|c| c.values.iter().any(|v| *v < 0.5)), "an empty picture");
+    assert_eq!(code(&brdfbake(&["plot", "ggx", "-p", "alpha=0", "-o", text(&svg)])), 6);
+    assert_eq!(code(&brdfbake(&["plot", "ggx", "-o", text(&dir.path().join("lobe.gif"))])), 2);
+    assert_eq!(code(&brdfbake(&["plot", "ggx", "--angles", "95"])), 2);
+}
+
+#[test]
+fn laws_of_all_models_are_printed() {
+    let o = brdfbake(&["laws"]);
+    assert_eq!(code(&o), 0, "{}", err(&o));
+    for m in brdfbake::models::MODELS {
+        assert!(out(&o).lines().any(|l| l.starts_with(m.id)), "{}", m.id);
+    }
+    assert!(out(&o).contains("known: not passive"));
+    assert_eq!(code(&brdfbake(&["laws", "gggx"])), 3);
+}

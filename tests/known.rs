@@ -96,3 +96,13 @@ fn a_model_that_is_not_passive_is_known_not_to_be() {
     let e = integrate(&*model, info.id, 1.0, &[Functional::One], 1e-3).unwrap();
     assert!((e.value[0] - 4.0).abs() < 0.01, "{}", e.value[0]);
 }
+
+#[test]
+fn no_model_breaks_a_law_that_it_claims() {
+    use brdfbake::verify::survey::{Verdict, survey};
+    for info in MODELS {
+        let s = survey(info);
+        assert_ne!(s.verdict, Verdict::Defect, "{}: {}", info.id, s.words);
+        assert!(info.laws.passive || s.verdict == Verdict::KnownBreach, "{}: {}", info.id, s.words);
+    }
+}
