@@ -5,6 +5,7 @@
 
 use super::gauss;
 use super::nodes::BATCH;
+use crate::math::exp::exp;
 
 /// Order of a panel at `level`: `level (c0 + c1 L)` rounded, between 2 and [`BATCH`].
 ///
@@ -51,13 +52,37 @@ impl Graded {
         let ratio = 1.0 / eps.max(1e-300);
         let l = libm::asinh(ratio);
         let rule = gauss::rule(order.at(level, l));
-        self.len = rule.nodes.len();
-        for (i, (&x, &w)) in rule.nodes.iter().zip(&rule.weights).enumerate() {
-            // sinh and cosh from one expm1, without cancellation at small arguments.
-            let m = libm::expm1(l * x);
-            let inverse = 1.0 / (1.0 + m);
-            self.node[i] = 0.5 * m * (1.0 + inverse) / ratio;
-            self.weight[i] = 0.5 * (1.0 + m + inverse) * l * w / ratio;
+        let n = rule.nodes.len();
+        self.len = n;
+        let (nodes, weights) = (&rule.nodes[..n], &rule.weights[..n]);
+        let (node, weight) = (&mut self.node[..n], &mut self.weight[..n]);
+        let scale = 1.0 / ratio;
+        if l < 1.0 {
+            // sinh y = (e^y - e^-y) / 2 would cancel here
+            for i in 0..n {
+                let (sinh, cosh) = near_zero(l * nodes[i]);
+                node[i] = sinh * scale;
+                weight[i] = cosh * (l * scale * weights[i]);
+            }
+        } else {
+            for i in 0..n {
+                let e = exp(l * nodes[i]);
+                let inverse = 1.0 / e;
+                node[i] = 0.5 * (e - inverse) * scale;
+                weight[i] = 0.5 * (e + inverse) * (l * scale * weights[i]);
+            }
         }
     }
+}
+
+/// sinh and cosh for |y| <= 1 by their series to y^17 (remainder below 1e-17).
+fn near_zero(y: f64) -> (f64, f64) {
+    let q = y * y;
+    let (mut sinh, mut cosh) = (1.0, 1.0);
+    for k in (1..=8u32).rev() {
+        let k = 2.0 * f64::from(k);
+        sinh = 1.0 + sinh * (q / (k * (k + 1.0)));
+        cosh = 1.0 + cosh * (q / (k * (k - 1.0)));
+    }
+    (y * sinh, cosh)
 }
