@@ -23,22 +23,8 @@ const FILES: &[&str] = &[
 ];
 
 /// Models that are not there yet.
-const PENDING: &[&str] = &[
-    "std_smith_correlated",
-    "ggx_schlickG_karis_ibl",
-    "torrance_sparrow_beckmann_vcavity",
-    "torrance_sparrow_blinn_vcavity",
-    "kelemen_specular_normalised",
-    "charlie_conty_kulla",
-    "charlie_neubelt_visibility",
-    "velvet07_neubelt",
-    "velvet00_vcavity",
-    "sggx_fiber_single_scatter",
-    "disney_clearcoat",
-    "walter2007_ggx_glass_separable",
-    "ggx_glass_heightcorr_beta",
-    "ggx_glass_pbrt_1_over_1plusLambdas",
-];
+const PENDING: &[&str] =
+    &["walter2007_ggx_glass_separable", "ggx_glass_heightcorr_beta", "ggx_glass_pbrt_1_over_1plusLambdas"];
 
 struct Row {
     name: String,

@@ -1,7 +1,7 @@
 //! The charts that a model can declare.
 
 use super::nodes::Nodes;
-use super::{half_vector, hemisphere};
+use super::{broad, half_vector, hemisphere};
 
 /// Coordinates of the hemisphere of incident directions in which a model is smooth.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,6 +19,11 @@ pub enum Chart {
     },
     /// Polar round the normal in `wi`; see [`hemisphere`].
     Hemisphere,
+    /// Polar round the normal in `wi`, graded without bound at horizon and normal; see [`broad`].
+    Broad {
+        /// As in [`Chart::HalfVector`].
+        kinks: bool,
+    },
 }
 
 impl Chart {
@@ -27,6 +32,7 @@ impl Chart {
         match *self {
             Chart::HalfVector { alpha, reach, .. } => half_vector::visit(mu_o, alpha, reach, level, visit),
             Chart::Hemisphere => hemisphere::visit(mu_o, level, visit),
+            Chart::Broad { .. } => broad::visit(mu_o, level, visit),
         }
     }
 
@@ -39,10 +45,10 @@ impl Chart {
     #[must_use]
     pub fn gain(&self, j: usize) -> f64 {
         let table = match self {
-            Chart::HalfVector { kinks: true, .. } => [0.2; 4],
+            Chart::HalfVector { kinks: true, .. } | Chart::Broad { kinks: true } => [0.2; 4],
             Chart::HalfVector { reach, .. } if reach.is_finite() => [0.3, 0.3, 0.3, 2.0],
             Chart::HalfVector { .. } => [0.3, 0.8, 0.9, 2.0],
-            Chart::Hemisphere => [1.0; 4],
+            Chart::Hemisphere | Chart::Broad { .. } => [1.0; 4],
         };
         table[j.clamp(1, table.len()) - 1]
     }
@@ -55,6 +61,9 @@ impl Chart {
                 "product Gauss-Legendre, graded half-vector chart, level raised until two levels agree"
             }
             Chart::Hemisphere => "product Gauss-Legendre, polar chart, level raised until two levels agree",
+            Chart::Broad { .. } => {
+                "double exponential by Gauss-Legendre, polar chart, level raised until two levels agree"
+            }
         }
     }
 }

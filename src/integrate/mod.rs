@@ -3,6 +3,7 @@
 //! A [`Chart`] spreads nodes over the hemisphere of incident directions so that the peak, the horizon and the plane
 //! of incidence are coordinate lines; [`ladder`] raises its level until two levels agree to a tolerance.
 
+pub mod broad;
 pub mod chart;
 pub mod gauss;
 pub mod graded;

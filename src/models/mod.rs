@@ -6,13 +6,30 @@
 pub mod beckmann;
 pub mod beckmann_conductor;
 pub mod beckmann_dielectric;
+pub mod blinn_phong_microfacet;
+pub mod charlie;
+pub mod charlie_neubelt;
+pub mod cloth;
 pub mod cook_torrance_1982;
+pub mod disney_clearcoat;
+pub mod facets;
 pub mod ggx;
 pub mod ggx_conductor;
 pub mod ggx_dielectric;
+pub mod ggx_schlick_masking;
+pub mod gtr;
+pub mod kelemen;
+pub mod kelemen_skin;
 pub mod lambert;
+pub mod ltc_sheen;
 pub mod microfacet;
+pub mod mirror;
 pub mod param;
+pub mod sggx_fiber;
+pub mod student_t;
+pub mod torrance_sparrow;
+pub mod velvet_ashikhmin;
+pub mod velvet_neubelt;
 
 use crate::cite::Cite;
 use crate::integrate::{BATCH, Chart, Estimate, Nodes};
@@ -23,13 +40,28 @@ use std::fmt::Debug;
 /// Every model, in the order of `list models`.
 pub static MODELS: &[&ModelInfo] = &[
     &lambert::INFO,
+    &mirror::INFO,
     &ggx::INFO,
     &ggx_conductor::INFO,
     &ggx_dielectric::INFO,
     &beckmann::INFO,
     &beckmann_conductor::INFO,
     &beckmann_dielectric::INFO,
+    &student_t::INFO,
+    &gtr::INFO,
+    &torrance_sparrow::INFO,
     &cook_torrance_1982::INFO,
+    &blinn_phong_microfacet::INFO,
+    &ggx_schlick_masking::INFO,
+    &kelemen::INFO,
+    &kelemen_skin::INFO,
+    &disney_clearcoat::INFO,
+    &charlie::INFO,
+    &charlie_neubelt::INFO,
+    &velvet_ashikhmin::INFO,
+    &velvet_neubelt::INFO,
+    &ltc_sheen::INFO,
+    &sggx_fiber::INFO,
 ];
 
 /// A reflectance model at one wavelength; a colour is three models.

@@ -52,7 +52,8 @@ fn fit(roughness: f64, x: f64) -> f64 {
 /// Visibility `V = 1/(4 mu_o mu_i (1 + Λ_o + Λ_i))` with the fitted Λ.
 ///
 /// Source: [Estevez and Kulla 2017](crate::cite::ESTEVEZ_KULLA_2017) §3. Range: ≥ 0, finite; 0 if a cosine is ≤ 0.
-/// Symmetric to the bit. The BRDF `D V` keeps E ≤ 0.962.
+/// Symmetric to the bit. The BRDF `D V` keeps E < 1 for roughness ≥ 0.07 and mu ≥ 1e-5, and not elsewhere: the fitted Λ is
+/// finite at the horizon.
 #[must_use]
 pub fn visibility(roughness: f64, mu_o: f64, mu_i: f64) -> f64 {
     let product = 4.0 * (mu_o * mu_i);

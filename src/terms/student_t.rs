@@ -44,6 +44,18 @@ impl StudentT {
         Self::new(alpha, alpha, gamma)
     }
 
+    /// Width along +x.
+    #[must_use]
+    pub fn alpha_x(&self) -> f64 {
+        self.alpha_x
+    }
+
+    /// Width along +y.
+    #[must_use]
+    pub fn alpha_y(&self) -> f64 {
+        self.alpha_y
+    }
+
     /// The exponent γ.
     #[must_use]
     pub fn gamma(&self) -> f64 {

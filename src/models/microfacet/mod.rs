@@ -7,9 +7,11 @@ mod beckmann;
 mod fresnel;
 mod ggx;
 mod reduction;
+mod student_t;
 
 pub use crate::terms::beckmann::Beckmann;
 pub use crate::terms::ggx::Ggx;
+pub use crate::terms::student_t::StudentT;
 pub use fresnel::Fresnel;
 
 use super::{Brdf, Param, ParamError, Params, Preset, Sample};
@@ -216,7 +218,7 @@ pub fn alphas(model: &'static str, params: &Params) -> Result<[f64; 2], ParamErr
 pub fn build<D: Distribution + 'static>(
     model: &'static str,
     params: &Params,
-    distribution: fn(f64, f64) -> D,
+    distribution: impl Fn(f64, f64) -> D,
     fresnel: Fresnel,
 ) -> Result<Box<dyn Brdf>, ParamError> {
     let [x, y] = alphas(model, params)?;

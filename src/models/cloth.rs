@@ -1,0 +1,57 @@
+//! The body of cloth lobes: broad, brightest at grazing, sampled by a uniform hemisphere.
+//!
+//! The sources say that nothing better than uniform directions is needed; a cosine would starve the rim.
+
+use super::{Brdf, Sample};
+use crate::integrate::{Chart, Estimate};
+use crate::math::{frame, special};
+use glam::{DVec2, DVec3};
+use std::f64::consts::TAU;
+use std::fmt::Debug;
+
+/// A cloth lobe.
+pub trait Cloth: Debug + Send + Sync {
+    /// f for two directions above the surface.
+    fn value(&self, wo: DVec3, wi: DVec3) -> f64;
+
+    /// True if it has kinks inside the panels of the chart.
+    fn kinks(&self) -> bool {
+        false
+    }
+
+    /// The directional albedo in closed form, if there is one.
+    fn albedo(&self, _mu_o: f64) -> Option<f64> {
+        None
+    }
+}
+
+/// A model that is a cloth lobe.
+#[derive(Debug)]
+pub struct ClothLobe<C: Cloth>(pub C);
+
+impl<C: Cloth> Brdf for ClothLobe<C> {
+    fn eval(&self, wo: DVec3, wi: DVec3) -> f64 {
+        if frame::both_above(wo, wi) { self.0.value(wo, wi) } else { 0.0 }
+    }
+
+    fn sample(&self, _wo: DVec3, u: DVec2) -> Option<Sample> {
+        let (cos, sin) = special::circle(u.y);
+        let r = ((1.0 - u.x) * (1.0 + u.x)).max(0.0).sqrt();
+        (u.x > 0.0).then(|| Sample { wi: DVec3::new(r * cos, r * sin, u.x), pdf: 1.0 / TAU })
+    }
+
+    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
+        if frame::both_above(wo, wi) { 1.0 / TAU } else { 0.0 }
+    }
+
+    fn chart(&self) -> Option<Chart> {
+        Some(Chart::Broad { kinks: self.0.kinks() })
+    }
+
+    fn reduced_albedo(&self, mu_o: f64, _tolerance: f64) -> Option<Estimate> {
+        let mut e = Estimate::exact([0.0; crate::integrate::MAX_CHANNELS]);
+        e.value[0] = self.0.albedo(mu_o)?;
+        e.error[0] = 1e-15;
+        Some(e)
+    }
+}
