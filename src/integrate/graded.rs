@@ -35,16 +35,37 @@ impl Graded {
     /// The rule of a panel of length 1 for the scale `eps > 0`.
     #[must_use]
     pub fn new(eps: f64, order: Order, level: f64) -> Graded {
+        Graded::between(eps, order, level, [0.0, 1.0])
+    }
+
+    /// A rule of (lo, hi) within (0, 1), graded towards 0 as [`Graded::new`]; its weights sum to hi - lo.
+    ///
+    /// Two of them that meet at a kink are as good as one rule without it.
+    #[must_use]
+    pub fn between(eps: f64, order: Order, level: f64, [lo, hi]: [f64; 2]) -> Graded {
         let ratio = 1.0 / eps.max(1e-300);
-        let l = libm::asinh(ratio);
+        let start = if lo > 0.0 { libm::asinh(ratio * lo) } else { 0.0 };
+        let l = libm::asinh(ratio * hi) - start;
         let rule = gauss::rule(order.at(level, l));
         let mut out = Graded { len: rule.nodes.len(), node: [0.0; BATCH], weight: [0.0; BATCH] };
         for (i, (&x, &w)) in rule.nodes.iter().zip(&rule.weights).enumerate() {
             // sinh and cosh from one expm1, without cancellation at small arguments.
-            let m = libm::expm1(l * x);
+            let m = libm::expm1(start + l * x);
             let inverse = 1.0 / (1.0 + m);
             out.node[i] = 0.5 * m * (1.0 + inverse) / ratio;
             out.weight[i] = 0.5 * (1.0 + m + inverse) * l * w / ratio;
+        }
+        out
+    }
+
+    /// The rule of a panel whose integrand holds the square root of the variable: `t = x^2`.
+    #[must_use]
+    pub fn root(order: Order, level: f64) -> Graded {
+        let rule = gauss::rule(order.at(level, 0.0));
+        let mut out = Graded { len: rule.nodes.len(), node: [0.0; BATCH], weight: [0.0; BATCH] };
+        for (i, (&x, &w)) in rule.nodes.iter().zip(&rule.weights).enumerate() {
+            out.node[i] = x * x;
+            out.weight[i] = 2.0 * x * w;
         }
         out
     }
