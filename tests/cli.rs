@@ -247,7 +247,7 @@ fn eval_appends_values_and_names_the_line_at_fault() {
         ("ggx,\"{\"\"alpha\"\": 0}\",0.5,0,0.5,3,x\n", "is a mirror"),
         ("ggx,\"{\"\"alpha\": 1}\",0.5,0,0.5,3,x\n", "params_json"),
         ("ggx,,north,0,0.5,3,x\n", "wi_theta = `north` is not a finite number"),
-        ("gxg,,0,0,0.5,3,x\n", "did you mean `ggx`?"),
+        ("gxg,,0,0,0.5,3,x\n", "did you mean `ggx`"),
     ] {
         std::fs::write(&path, format!("{header}{good}{row}")).unwrap();
         let o = brdfbake(&["eval", text(&path)]);

@@ -41,8 +41,8 @@ fn honesty(
     let (mut low, mut worst) = (0.0, 0.0f64);
     for &(mu, alpha) in points {
         let m = model(id, alpha);
-        let reference = integrate(&*m, id, mu, &both, 1e-13).unwrap();
-        let e = integrate(&*m, id, mu, functionals, tolerance).unwrap();
+        let reference = integrate(&*m, mu, &both, 1e-13).unwrap();
+        let e = integrate(&*m, mu, functionals, tolerance).unwrap();
         let mut ok = true;
         for c in 0..functionals.len() {
             let error = (e.value[c] - reference.value[c]).abs();

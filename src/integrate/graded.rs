@@ -49,29 +49,57 @@ impl Graded {
 
     /// Makes this the rule of another scale, order and level, in place.
     pub fn set(&mut self, eps: f64, order: Order, level: f64) {
+        self.set_between(eps, order, level, [0.0, 1.0]);
+    }
+
+    /// A rule of (lo, hi) within (0, 1), graded towards 0 as [`Graded::new`]; its weights sum to hi - lo.
+    ///
+    /// Two of them that meet at a kink are as good as one rule without it.
+    #[must_use]
+    pub fn between(eps: f64, order: Order, level: f64, span: [f64; 2]) -> Graded {
+        let mut rule = Graded::empty();
+        rule.set_between(eps, order, level, span);
+        rule
+    }
+
+    /// As [`Graded::between`], in place.
+    fn set_between(&mut self, eps: f64, order: Order, level: f64, [lo, hi]: [f64; 2]) {
         let ratio = 1.0 / eps.max(1e-300);
-        let l = libm::asinh(ratio);
+        let start = if lo > 0.0 { libm::asinh(ratio * lo) } else { 0.0 };
+        let l = libm::asinh(ratio * hi) - start;
         let rule = gauss::rule(order.at(level, l));
         let n = rule.nodes.len();
         self.len = n;
         let (nodes, weights) = (&rule.nodes[..n], &rule.weights[..n]);
         let (node, weight) = (&mut self.node[..n], &mut self.weight[..n]);
         let scale = 1.0 / ratio;
-        if l < 1.0 {
+        if start + l < 1.0 {
             // sinh y = (e^y - e^-y) / 2 would cancel here
             for i in 0..n {
-                let (sinh, cosh) = near_zero(l * nodes[i]);
+                let (sinh, cosh) = near_zero(start + l * nodes[i]);
                 node[i] = sinh * scale;
                 weight[i] = cosh * (l * scale * weights[i]);
             }
         } else {
             for i in 0..n {
-                let e = exp(l * nodes[i]);
+                let e = exp(start + l * nodes[i]);
                 let inverse = 1.0 / e;
                 node[i] = 0.5 * (e - inverse) * scale;
                 weight[i] = 0.5 * (e + inverse) * (l * scale * weights[i]);
             }
         }
+    }
+
+    /// The rule of a panel whose integrand holds the square root of the variable: `t = x^2`.
+    #[must_use]
+    pub fn root(order: Order, level: f64) -> Graded {
+        let rule = gauss::rule(order.at(level, 0.0));
+        let mut out = Graded { len: rule.nodes.len(), node: [0.0; BATCH], weight: [0.0; BATCH] };
+        for (i, (&x, &w)) in rule.nodes.iter().zip(&rule.weights).enumerate() {
+            out.node[i] = x * x;
+            out.weight[i] = 2.0 * x * w;
+        }
+        out
     }
 }
 

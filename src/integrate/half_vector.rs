@@ -1,4 +1,4 @@
-//! The half-vector chart: wm in polar coordinates round the normal, with the horizon as a coordinate line.
+//! The half-vector chart of isotropic models: wm in polar coordinates round the normal, with the horizon as a coordinate line.
 //!
 //! With `wo = (s, 0, mu)`, `wm = (sin t cos p, sin t sin p, cos t)`, `v = wo . wm` and `wi = 2 v wm - wo`:
 //!
@@ -33,24 +33,38 @@ const HORIZON: Order = Order(1.0, 0.25);
 /// Widest and narrowest scale that the gradings are built for.
 const ALPHA_RANGE: [f64; 2] = [1e-8, 4.0];
 
-/// Geometry of one azimuth: cosine, R, and tangents of t_max / 2 and t_max / 4.
-struct Row {
-    cos_phi: f64,
-    r: f64,
-    half: f64,
-    quarter: f64,
+/// Geometry of one azimuth of wm: its direction, R, and tangents of t_max / 2 and t_max / 4.
+pub(super) struct Row {
+    pub(super) cos_phi: f64,
+    pub(super) sin_phi: f64,
+    /// The part of wo along the azimuth.
+    along: f64,
+    pub(super) r: f64,
+    pub(super) half: f64,
+    pub(super) quarter: f64,
 }
 
 impl Row {
-    fn new(cos_phi: f64, sin_o: f64, mu: f64) -> Row {
-        let a = sin_o * cos_phi;
+    /// From the azimuth of wm and the part `a` of wo along it, `a = sin_o cos(phi - phi_o)`.
+    pub(super) fn new(cos_phi: f64, sin_phi: f64, a: f64, mu: f64) -> Row {
         let r = (a * a + mu * mu).sqrt();
         // sin and cos of t_max from cos(2 t_max) = -a / r; the small one of 1 +- a/r as mu^2 / (r (r + |a|)).
         let near = mu / (2.0 * r * (r + a.abs())).sqrt();
         let far = ((r + a.abs()) / (2.0 * r)).sqrt();
         let (sin, cos) = if a >= 0.0 { (far, near) } else { (near, far) };
         let half = sin / (1.0 + cos);
-        Row { cos_phi, r, half, quarter: half / (1.0 + (1.0 + half * half).sqrt()) }
+        Row { cos_phi, sin_phi, along: a, r, half, quarter: half / (1.0 + (1.0 + half * half).sqrt()) }
+    }
+
+    /// From the azimuth of wm relative to wo.
+    fn relative(cos_phi: f64, sin_o: f64, mu: f64) -> Row {
+        let sin_phi = ((1.0 - cos_phi) * (1.0 + cos_phi)).max(0.0).sqrt();
+        Row::new(cos_phi, sin_phi, sin_o * cos_phi, mu)
+    }
+
+    /// Tangent of half the angle from the horizon at which D ends, if it ends at half tangent `end`; 0 beyond.
+    pub(super) fn above_horizon(&self, end: f64) -> f64 {
+        ((self.half - end) / (1.0 + self.half * end)).max(0.0)
     }
 }
 
@@ -68,8 +82,8 @@ impl Default for Workspace {
     fn default() -> Workspace {
         let empty = Graded::empty;
         Workspace {
-            near: Nodes::new(1.0),
-            far: Nodes::new(1.0),
+            near: Nodes::new(1.0.into()),
+            far: Nodes::new(1.0.into()),
             azimuth: empty(),
             peak: empty(),
             horizon: empty(),
@@ -91,8 +105,8 @@ pub fn visit(mu_o: f64, alpha: f64, reach: f64, level: f64, visit: &mut dyn FnMu
     // the arrays are kept from call to call: clearing them would cost as much as a coarse level
     let mut space = SPARE.take().unwrap_or_default();
     let Workspace { near, far, azimuth, peak, horizon } = &mut *space;
-    near.reset(mu_o);
-    far.reset(mu_o);
+    near.reset(mu_o.into());
+    far.reset(mu_o.into());
     let (s, mu) = (near.sin_o, mu_o);
     let azimuth_scale = (mu / (s.max(1e-9) * FRAC_PI_2)).clamp(1e-9, 1e3);
     for (front, order) in [(true, AZIMUTH_FRONT), (false, AZIMUTH_BACK)] {
@@ -102,7 +116,7 @@ pub fn visit(mu_o: f64, alpha: f64, reach: f64, level: f64, visit: &mut dyn FnMu
         }
         azimuth.set(azimuth_scale, order, level);
         // Gradings are shared by the rows of a side; the row at phi = 0 (or pi/2) is the most demanding one.
-        let hardest = Row::new(if front { 1.0 } else { 0.0 }, s, mu.max(1e-12));
+        let hardest = Row::relative(if front { 1.0 } else { 0.0 }, s, mu.max(1e-12));
         peak.set(0.5 * alpha / hardest.quarter.min(end), PEAK, level);
         let scale = (mu.min(3.0 * alpha) / (2.0 * hardest.r)).clamp(1e-9, 1.0);
         horizon.set(0.5 * scale / hardest.quarter, HORIZON, level);
@@ -110,13 +124,13 @@ pub fn visit(mu_o: f64, alpha: f64, reach: f64, level: f64, visit: &mut dyn FnMu
         far.panel = near.panel + 1;
         for j in 0..azimuth.len {
             let sine = libm::sin(FRAC_PI_2 * azimuth.node[j]);
-            let row = Row::new(if front { sine } else { -sine }, s, mu);
+            let row = Row::relative(if front { sine } else { -sine }, s, mu);
             // 2 for the mirror half of the azimuth.
             let width = 2.0 * FRAC_PI_2 * azimuth.weight[j];
             flush(near, peak.len, visit);
             fill_peak(near, &row, peak, width, row.quarter.min(end));
             // distance from the horizon at which D ends; beyond the half way point nothing is left
-            let near_end = ((row.half - end) / (1.0 + row.half * end)).max(0.0);
+            let near_end = row.above_horizon(end);
             if near_end < row.quarter {
                 flush(far, horizon.len, visit);
                 fill_horizon(far, &row, horizon, width, [near_end, row.quarter]);
@@ -137,7 +151,7 @@ fn flush(nodes: &mut Nodes, more: usize, visit: &mut dyn FnMut(&Nodes)) {
 }
 
 /// `tan(t / 2)` from `tan(t)`; 1 at infinity.
-fn half_tangent(tan: f64) -> f64 {
+pub(super) fn half_tangent(tan: f64) -> f64 {
     if tan.is_finite() { tan / (1.0 + (1.0 + tan * tan).sqrt()) } else { 1.0 }
 }
 
@@ -145,11 +159,12 @@ fn half_tangent(tan: f64) -> f64 {
 ///
 /// `mu_i` is far from 0 relative to its terms here (at least `mu / 2`), so it is formed directly.
 fn fill_peak(nodes: &mut Nodes, row: &Row, graded: &Graded, width: f64, end: f64) {
-    let (a, mu) = (nodes.sin_o * row.cos_phi, nodes.mu_o);
+    let (a, mu) = (row.along, nodes.mu_o);
     let len = graded.len;
     let at = nodes.len..nodes.len + len;
     nodes.len += len;
     nodes.cos_phi[at.clone()].fill(row.cos_phi);
+    nodes.sin_phi[at.clone()].fill(row.sin_phi);
     let scale = 8.0 * end * width;
     let (node, weight) = (&graded.node[..len], &graded.weight[..len]);
     let (cos_h, sin_h) = (&mut nodes.cos_h[at.clone()], &mut nodes.sin_h[at.clone()]);
@@ -178,6 +193,7 @@ fn fill_horizon(nodes: &mut Nodes, row: &Row, graded: &Graded, width: f64, span:
     let at = nodes.len..nodes.len + len;
     nodes.len += len;
     nodes.cos_phi[at.clone()].fill(row.cos_phi);
+    nodes.sin_phi[at.clone()].fill(row.sin_phi);
     let scale = 8.0 * length * width;
     let (node, weight) = (&graded.node[..len], &graded.weight[..len]);
     let (cos_h, sin_h) = (&mut nodes.cos_h[at.clone()], &mut nodes.sin_h[at.clone()]);
@@ -200,5 +216,22 @@ fn fill_horizon(nodes: &mut Nodes, row: &Row, graded: &Graded, width: f64, span:
         mu_i[i] = m;
         cos_d[i] = v;
         out[i] = scale * (v * sin) * (sec_u * weight[i]);
+    }
+}
+
+/// Nodes of one row and panel of a chart with rows of its own: the batch is replaced.
+pub(super) fn fill(
+    nodes: &mut Nodes,
+    row: &Row,
+    graded: &Graded,
+    width: f64,
+    span: [f64; 2],
+    from_horizon: bool,
+) {
+    nodes.len = 0;
+    if from_horizon {
+        fill_horizon(nodes, row, graded, width, span);
+    } else {
+        fill_peak(nodes, row, graded, width, span[1]);
     }
 }

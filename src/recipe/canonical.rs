@@ -45,7 +45,7 @@ pub(super) fn table(table: &PlannedTable) -> Json {
 /// Parameters of the model, then of the kind, without those that an axis sweeps.
 fn params(table: &PlannedTable) -> Json {
     let spec = &table.bound.spec;
-    let swept: Vec<&str> = spec.grid.axes().iter().map(|a| a.quantity.base_id()).collect();
+    let swept = spec.swept();
     let mut map = Map::new();
     let model = spec.model.iter().map(|(info, params)| (info.params, params));
     for (declared, params) in model.chain([(spec.kind.params, &spec.params)]) {
@@ -53,6 +53,9 @@ fn params(table: &PlannedTable) -> Json {
             let value = match param.kind {
                 Kind::Number { .. } => Json::from(params.number(param.id) + 0.0),
                 Kind::Choice(_) => Json::from(params.choice(param.id)),
+                Kind::Rows { .. } => {
+                    params.rows(param.id).iter().map(|row| Json::from(row.as_slice())).collect()
+                }
             };
             map.insert(param.id.to_owned(), value);
         }

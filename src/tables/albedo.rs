@@ -42,7 +42,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
 impl Baker for Albedo {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
         let model = self.sweep.model(at)?;
-        integrate(&*model, self.sweep.info().id, self.sweep.mu(at), &[Functional::One], tolerance)
+        integrate(&*model, self.sweep.view(at), &[Functional::One], tolerance)
     }
 
     fn rule(&self) -> String {

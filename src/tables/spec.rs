@@ -260,9 +260,18 @@ fn check_axes(
         .filter(|p| matches!(p.kind, models::Kind::Number { .. }))
         .map(|p| p.id)
         .collect();
+    // a view has an azimuth where it has a cosine
+    let azimuth: &[&str] = if model.is_some() && kind.coordinates.contains(&"mu") { &["phi"] } else { &[] };
     for (axis, base) in grid.axes().iter().zip(&bases) {
-        if !kind.coordinates.contains(base) && !numbers.contains(base) {
-            let allowed = kind.coordinates.iter().chain(&numbers).copied().collect::<Vec<_>>().join(", ");
+        if !kind.coordinates.contains(base) && !numbers.contains(base) && !azimuth.contains(base) {
+            let allowed = kind
+                .coordinates
+                .iter()
+                .chain(&numbers)
+                .chain(azimuth)
+                .copied()
+                .collect::<Vec<_>>()
+                .join(", ");
             return Err(BindError::IdleAxis { kind: kind.id, axis: axis.quantity.id, allowed });
         }
         if given.contains_key(*base) {

@@ -76,7 +76,7 @@ pub fn survey(info: &'static ModelInfo) -> Survey {
     for (label, params) in parameter_sets(info) {
         if let Ok(model) = (info.build)(&params) {
             pairs(&*model, &label, &mut s);
-            albedos(&*model, info.id, &label, &mut s);
+            albedos(&*model, &label, &mut s);
         }
     }
     judge(info, &mut s);
@@ -101,9 +101,9 @@ fn pairs(model: &dyn Brdf, label: &str, s: &mut Survey) {
     }
 }
 
-fn albedos(model: &dyn Brdf, id: &'static str, label: &str, s: &mut Survey) {
+fn albedos(model: &dyn Brdf, label: &str, s: &mut Survey) {
     for mu in COSINES {
-        let Ok(e) = integrate(model, id, mu, &[Functional::One], TOLERANCE) else { continue };
+        let Ok(e) = integrate(model, mu, &[Functional::One], TOLERANCE) else { continue };
         // an estimate that stays large (a divergence, a stiff corner) proves nothing
         let lower = e.value[0] - e.error[0];
         if e.value[0].is_finite()
