@@ -3,6 +3,7 @@
 //! To add a model: write `models/NAME.rs` with a [`ModelInfo`], add `pub mod NAME;` and one line to [`MODELS`].
 //! The command line, recipe checks, test grids, file metadata and the README table follow from the registry.
 
+pub mod albedo_curve;
 pub mod beckmann;
 pub mod beckmann_conductor;
 pub mod beckmann_dielectric;
@@ -10,16 +11,20 @@ pub mod blinn_phong_microfacet;
 pub mod charlie;
 pub mod charlie_neubelt;
 pub mod cloth;
+pub mod compensated;
 pub mod cook_torrance_1982;
 pub mod disney_clearcoat;
 pub mod facets;
+pub mod fdez_aguera;
 pub mod ggx;
 pub mod ggx_conductor;
 pub mod ggx_dielectric;
 pub mod ggx_schlick_masking;
 pub mod gtr;
 pub mod kelemen;
+pub mod kelemen_matte;
 pub mod kelemen_skin;
+pub mod kulla_conty;
 pub mod lambert;
 pub mod ltc_sheen;
 pub mod microfacet;
@@ -28,6 +33,7 @@ pub mod param;
 pub mod sggx_fiber;
 pub mod student_t;
 pub mod torrance_sparrow;
+pub mod turquin;
 pub mod velvet_ashikhmin;
 pub mod velvet_neubelt;
 
@@ -53,7 +59,11 @@ pub static MODELS: &[&ModelInfo] = &[
     &cook_torrance_1982::INFO,
     &blinn_phong_microfacet::INFO,
     &ggx_schlick_masking::INFO,
+    &kulla_conty::INFO,
+    &turquin::INFO,
+    &fdez_aguera::INFO,
     &kelemen::INFO,
+    &kelemen_matte::INFO,
     &kelemen_skin::INFO,
     &disney_clearcoat::INFO,
     &charlie::INFO,
