@@ -46,6 +46,8 @@ cites! {
     CHIANG_2016 = "Chiang2016", "Chiang, Kutz, Burley: Practical and Controllable Subsurface Scattering for Production Path Tracing, SIGGRAPH talks", 2016, "https://doi.org/10.1145/2897839.2927433";
     /// Christensen and Burley, normalised diffusion.
     CHRISTENSEN_BURLEY_2015 = "ChristensenBurley2015", "Christensen, Burley: Approximate Reflectance Profiles for Efficient Subsurface Scattering, Pixar memo 15-04", 2015, "https://graphics.pixar.com/library/ApproxBSSRDF/";
+    /// The standard illuminants of the CIE.
+    CIE_11664_2 = "CIE11664-2", "ISO/CIE 11664-2: Colorimetry, part 2: CIE standard illuminants", 2022, "https://cie.co.at/publications/colorimetry-part-2-cie-standard-illuminants-0";
     /// Cook and Torrance, the first microfacet model of graphics.
     COOK_TORRANCE_1982 = "CookTorrance1982", "Cook, Torrance: A Reflectance Model for Computer Graphics, ACM TOG 1(1)", 1982, "https://doi.org/10.1145/357290.357293";
     /// Dekker, products without rounding error.
@@ -102,6 +104,10 @@ cites! {
     JENSEN_2002 = "Jensen2002", "Jensen, Buhler: A Rapid Hierarchical Rendering Technique for Translucent Materials, SIGGRAPH", 2002, "https://doi.org/10.1145/566654.566619";
     /// Jimenez and others, light through ears.
     JIMENEZ_2010 = "Jimenez2010", "Jimenez, Whelan, Sundstedt, Gutierrez: Real-Time Realistic Skin Translucency, IEEE CG&A 30(4)", 2010, "https://doi.org/10.1109/MCG.2010.39";
+    /// Johnson and Christy, the noble metals.
+    JOHNSON_CHRISTY_1972 = "JohnsonChristy1972", "Johnson, Christy: Optical Constants of the Noble Metals, Physical Review B 6", 1972, "https://doi.org/10.1103/PhysRevB.6.4370";
+    /// Johnson and Christy, the transition metals.
+    JOHNSON_CHRISTY_1974 = "JohnsonChristy1974", "Johnson, Christy: Optical Constants of Transition Metals: Ti, V, Cr, Mn, Fe, Co, Ni, and Pd, Physical Review B 9", 1974, "https://doi.org/10.1103/PhysRevB.9.5056";
     /// Karis, split-sum environment lighting.
     KARIS_2013 = "Karis2013", "Karis: Real Shading in Unreal Engine 4, SIGGRAPH course", 2013, "https://blog.selfshadow.com/publications/s2013-shading-course/";
     /// Kelemen and Szirmay-Kalos, the coupled matte and specular model.
@@ -140,8 +146,14 @@ cites! {
     PHONG_1975 = "Phong1975", "Phong: Illumination for Computer Generated Pictures, CACM 18(6)", 1975, "https://doi.org/10.1145/360825.360839";
     /// Planck, the law of black bodies.
     PLANCK_1901 = "Planck1901", "Planck: Ueber das Gesetz der Energieverteilung im Normalspectrum, Annalen der Physik 309(3)", 1901, "https://doi.org/10.1002/andp.19013090310";
+    /// Polyanskiy, the database of refractive indices.
+    POLYANSKIY_2024 = "Polyanskiy2024", "Polyanskiy: Refractiveindex.info Database of Optical Constants, Scientific Data 11 (data dedicated to the public domain, CC0)", 2024, "https://doi.org/10.1038/s41597-023-02898-2";
     /// Portsmouth, Kutz and Hill, an energy-preserving rough diffuse lobe.
     PORTSMOUTH_2025 = "Portsmouth2025", "Portsmouth, Kutz, Hill: EON: A Practical Energy-Preserving Rough Diffuse BRDF, JCGT 14(1)", 2025, "https://arxiv.org/abs/2410.18026";
+    /// Rakic, aluminium.
+    RAKIC_1995 = "Rakic1995", "Rakic: Algorithm for the Determination of Intrinsic Optical Constants of Metal Films: Application to Aluminum, Applied Optics 34", 1995, "https://doi.org/10.1364/AO.34.004755";
+    /// Rakic and others, metals in closed form.
+    RAKIC_1998 = "Rakic1998", "Rakic, Djurisic, Elazar, Majewski: Optical Properties of Metallic Films for Vertical-Cavity Optoelectronic Devices, Applied Optics 37", 1998, "https://doi.org/10.1364/AO.37.005271";
     /// Ribardiere and others, Student's t distribution of normals.
     RIBARDIERE_2017 = "Ribardiere2017", "Ribardiere, Bringier, Meneveaux, Simonot: STD: Student's t-Distribution of Slopes for Microfacet Based BSDFs, CGF 36(2)", 2017, "https://doi.org/10.1111/cgf.13137";
     /// Schlick, the approximation of the Fresnel factor.

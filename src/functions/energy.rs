@@ -83,7 +83,7 @@ pub static ALL: &[FunctionInfo] = &[
         eval: |p, _| Ok(ms::turquin(p.number("f0"), p.number("e"))),
     },
     FunctionInfo {
-        id: "fdez-aguera",
+        id: "fdez-aguera-weights",
         title: "Weights of the split sum with multiple scattering",
         formula: "single F0 A + B; multiple single F_avg E_ms / (1 - F_avg E_ms), E_ms = 1 - A - B; rest 1 - single - multiple",
         sources: &[(cite::FDEZ_AGUERA_2019, "Eq. 8 to 12 (numbers recalled)")],

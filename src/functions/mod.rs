@@ -12,6 +12,7 @@ pub mod geometry;
 pub mod ltc;
 pub mod masking;
 pub mod media;
+pub mod metals;
 pub mod ndf;
 pub mod phase;
 pub mod profile;
@@ -30,6 +31,7 @@ pub static FAMILIES: &[&[FunctionInfo]] = &[
     fresnel::ALL,
     fresnel_average::ALL,
     thin_film::ALL,
+    metals::ALL,
     ndf::ALL,
     masking::ALL,
     sampling::ALL,

@@ -3,6 +3,7 @@
 //! To add a model: write `models/NAME.rs` with a [`ModelInfo`], add `pub mod NAME;` and one line to [`MODELS`].
 //! The command line, recipe checks, test grids, file metadata and the README table follow from the registry.
 
+pub mod albedo_curve;
 pub mod ashikhmin_shirley;
 pub mod ashikhmin_shirley_diffuse;
 pub mod ashikhmin_shirley_specular;
@@ -19,10 +20,12 @@ pub mod burley_diffuse;
 pub mod charlie;
 pub mod charlie_neubelt;
 pub mod cloth;
+pub mod compensated;
 pub mod cook_torrance_1982;
 pub mod disney_clearcoat;
 pub mod eon;
 pub mod facets;
+pub mod fdez_aguera;
 pub mod frostbite_diffuse;
 pub mod fujii;
 pub mod ggx;
@@ -31,7 +34,9 @@ pub mod ggx_dielectric;
 pub mod ggx_schlick_masking;
 pub mod gtr;
 pub mod kelemen;
+pub mod kelemen_matte;
 pub mod kelemen_skin;
+pub mod kulla_conty;
 pub mod lafortune;
 pub mod lafortune_lobe;
 pub mod lambert;
@@ -49,6 +54,7 @@ pub mod phong_shading;
 pub mod sggx_fiber;
 pub mod student_t;
 pub mod torrance_sparrow;
+pub mod turquin;
 pub mod velvet_ashikhmin;
 pub mod velvet_neubelt;
 pub mod ward;
@@ -102,7 +108,11 @@ pub static MODELS: &[&ModelInfo] = &[
     &cook_torrance_1982::INFO,
     &blinn_phong_microfacet::INFO,
     &ggx_schlick_masking::INFO,
+    &kulla_conty::INFO,
+    &turquin::INFO,
+    &fdez_aguera::INFO,
     &kelemen::INFO,
+    &kelemen_matte::INFO,
     &kelemen_skin::INFO,
     &disney_clearcoat::INFO,
     &charlie::INFO,

@@ -16,6 +16,7 @@ pub mod lazanyi;
 pub mod ltc;
 pub mod ltc_sheen;
 pub mod medium;
+pub mod metals;
 pub mod multiple_scattering;
 pub mod normal_filtering;
 pub mod phase;

@@ -2,7 +2,8 @@
 
 use crate::values::assert_relative;
 use brdfbake::integrate::gauss;
-use brdfbake::terms::{fresnel, gulbrandsen, lazanyi};
+use brdfbake::terms::metals::{self, METALS};
+use brdfbake::terms::{blackbody, fresnel, gulbrandsen, lazanyi};
 
 #[test]
 fn lazanyi_meets_the_exact_value_at_both_ends() {
@@ -53,4 +54,54 @@ fn the_product_form_is_the_printed_one() {
     let (got_n, got_k) = gulbrandsen::index(r, g);
     assert_relative("n", got_n, n, 1e-14);
     assert_relative("k", got_k, k2.sqrt(), 1e-13);
+}
+
+#[test]
+fn rows_are_in_order_and_cover_the_visible() {
+    for metal in METALS {
+        assert!(metal.rows.windows(2).all(|w| w[0][0] < w[1][0]), "{}", metal.name);
+        assert!(metal.rows[0][0] < 370.0 && metal.rows.last().unwrap()[0] > 800.0, "{}", metal.name);
+        assert!(metal.rows.iter().all(|r| r[1] > 0.0 && r[2] > 0.0), "{}", metal.name);
+        for row in metal.rows {
+            assert_eq!(metal.index(row[0]), (row[1], row[2]), "{}", metal.name);
+        }
+        for lambda in [300.0, 455.5, 1000.0] {
+            assert!((0.3..1.0).contains(&metal.f0(lambda)), "{} {lambda}", metal.name);
+        }
+        assert!(metal.rgb_index().iter().all(|(n, k)| *n > 0.0 && *k > 1.0), "{}", metal.name);
+    }
+}
+
+#[test]
+fn colours_are_near_those_in_use() {
+    // Base colours that a widely used engine documents for its metals; it does not say which measurements they are from.
+    let published = [
+        ("fe", [0.560, 0.570, 0.580]),
+        ("ag", [0.972, 0.960, 0.915]),
+        ("al", [0.913, 0.921, 0.925]),
+        ("au", [1.000, 0.766, 0.336]),
+        ("cu", [0.955, 0.637, 0.538]),
+        ("ni", [0.660, 0.609, 0.526]),
+        ("ti", [0.542, 0.497, 0.449]),
+    ];
+    for (id, expected) in published {
+        let got = metals::find(id).unwrap().f0_srgb();
+        for (g, e) in got.iter().zip(expected) {
+            assert!((g - e).abs() < 0.1, "{id}: {got:?}, published {expected:?}");
+        }
+    }
+    // D65 seen by the fitted eye is white in sRGB to the quality of the fit
+    let mut xyz = [0.0; 3];
+    for i in 0..=470 {
+        let lambda = 360.0 + f64::from(i);
+        for (sum, eye) in xyz.iter_mut().zip(blackbody::wyman_xyz(lambda)) {
+            *sum += metals::d65(lambda) * eye;
+        }
+    }
+    let white = blackbody::xyz_to_srgb(xyz);
+    assert!(
+        (white[0] / white[1] - 1.0).abs() < 5e-3 && (white[2] / white[1] - 1.0).abs() < 5e-3,
+        "{white:?}"
+    );
+    assert_eq!((metals::d65(359.0), metals::d65(560.0), metals::d65(831.0)), (0.0, 100.0, 0.0));
 }
