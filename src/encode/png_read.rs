@@ -17,6 +17,16 @@ const MAX_ALLOC: u64 = 1 << 30;
 const MAX_TEXT: usize = 1 << 24;
 
 pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
+    // crate png 0.18 can panic on a damaged palette; the panic is caught and told as an error
+    std::panic::catch_unwind(|| decode(bytes)).unwrap_or_else(|_| {
+        Err(ReadError::Fault {
+            format: FORMAT,
+            fault: "the data are damaged (the decoder gave up)".to_owned(),
+        })
+    })
+}
+
+fn decode(bytes: &[u8]) -> Result<Image, ReadError> {
     let (width, height, sample, mut planes) = pixels(bytes)?;
     let provenance = text(bytes).map(Claim::parse);
     if let Some(Claim::Known(p)) = &provenance {
