@@ -9,6 +9,9 @@
 //! of the halves are raised by that factor. The first cells are fine around the mirror direction and wo, where lobes
 //! peak; a lobe narrower than 1e-3 elsewhere may be missed: such models should declare a chart.
 //!
+//! Measured (`tests/quadrature_charts.rs`): 1e-5 takes 1000 to 10 000 evaluations for lobes wider than 0.05, and the
+//! error stays below its estimate, mostly by a factor of ten and more; an integrand with a step needs 250 000 for 1e-4.
+//!
 //! Source: [Genz and Malik 1980](crate::cite::GENZ_MALIK_1980); the subdivision is that of `DCUHRE`.
 
 use super::ladder::{Estimate, MAX_CHANNELS, ROUNDING, Sums};

@@ -84,8 +84,8 @@ pub fn integrate(
     let mut add = |nodes: &Nodes, sums: &mut Sums| {
         let n = nodes.len;
         model.eval_nodes(nodes, &mut values);
-        for i in 0..n {
-            values[i] *= nodes.weight[i] * nodes.mu_i[i];
+        for ((v, w), mu_i) in values[..n].iter_mut().zip(&nodes.weight).zip(&nodes.mu_i) {
+            *v *= w * mu_i;
         }
         for (s, g) in sums.iter_mut().zip(functionals) {
             *s += g.sum(&values[..n], &nodes.cos_d[..n]);

@@ -66,12 +66,10 @@ impl Sweep {
         for &(i, id) in &self.swept {
             let before = params.number(id);
             params.set(id, at[i]);
-            // alpha_x and alpha_y follow alpha unless they were set apart
-            if id == "alpha" {
-                for other in ["alpha_x", "alpha_y"] {
-                    if (params.number(other) - before).abs() == 0.0 {
-                        params.set(other, at[i]);
-                    }
+            // alpha_x and alpha_y follow alpha, nv follows nu, unless they were set apart
+            for other in self.info.followers(id) {
+                if (params.number(other) - before).abs() == 0.0 {
+                    params.set(other, at[i]);
                 }
             }
         }
