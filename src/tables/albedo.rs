@@ -23,7 +23,7 @@ pub static INFO: TableInfo = TableInfo {
     params: &[],
     laws: &["finite", "range", "energy", "cross-check", "reciprocity"],
     axes: default_axes,
-    notes: "Axes: mu, and any number parameter of the model (alpha or roughness, f0, eta, ...).",
+    notes: "Axes: mu, phi (the view azimuth, for anisotropic models), and any number parameter of the model (alpha or roughness, f0, eta, ...).",
     bind,
 };
 
@@ -46,7 +46,8 @@ impl Baker for Albedo {
     }
 
     fn rule(&self) -> String {
-        "one-dimensional reduction where the model has one, else product Gauss-Legendre in its chart"
+        "closed form or one-dimensional reduction where the model has one, else Gauss-Legendre in the charts of its lobes, \
+         else adaptive subdivision"
             .to_owned()
     }
 }
