@@ -4,6 +4,12 @@
 
 #[path = "empirical/closed_forms.rs"]
 mod closed_forms;
+#[path = "empirical/largest.rs"]
+mod largest;
+#[path = "empirical/limits.rs"]
+mod limits;
+#[path = "empirical/stiff.rs"]
+mod stiff;
 #[path = "empirical/support.rs"]
 mod support;
 #[path = "empirical/values.rs"]

@@ -53,6 +53,11 @@ pub static QUANTITIES: &[Quantity] = &[
     base("eta", "eta", "1", "relative index of refraction, below over above", [1e-3, 1e3]),
     base("k", "k", "1", "extinction coefficient of a conductor", [0.0, 1e3]),
     base("f0", "F0", "1", "reflectance at normal incidence", [0.0, 1.0]),
+    base("n", "n", "1", "exponent of a cosine lobe", [0.0, 1e7]),
+    base("nu", "nu", "1", "exponent of a cosine lobe along the tangent", [0.0, 1e7]),
+    base("nv", "nv", "1", "exponent of a cosine lobe along the bitangent", [0.0, 1e7]),
+    base("sigma", "sigma", "rad", "standard deviation of the slope angle of facets", [0.0, 1.57]),
+    base("r", "r", "1", "roughness of a diffuse lobe, as its model takes it", [0.0, 1.0]),
     base("rho", "rho", "1", "diffuse reflectance", [0.0, 1.0]),
     derived(
         "roughness",

@@ -4,10 +4,14 @@
 //! common points). The cell with the largest difference of the two is halved along the axis with the larger fourth
 //! difference, until the sum of the differences meets the tolerance or [`MAX_CELLS`] are used up.
 //!
-//! Honesty: the rule of degree 7 is the value, its difference to degree 5 the error. Where the halves of a cell
+//! Honesty: the rule of degree 7 is the value, twice its difference to degree 5 the error. Where the halves of a cell
 //! disagree with the whole by more than their own errors say, the rules did not see what is in there, and the errors
 //! of the halves are raised by that factor. The first cells are fine around the mirror direction and wo, where lobes
-//! peak; a lobe narrower than 1e-3 elsewhere may be missed: such models should declare a chart.
+//! peak; a lobe narrower than 1e-3 elsewhere may be missed, and along an edge of infinite slope the error may be ten
+//! times its estimate: such models should declare a chart.
+//!
+//! Measured (`tests/quadrature_charts.rs`): 1e-5 takes 2000 to 13 000 evaluations for lobes wider than 0.05, and the
+//! error stays below its estimate, mostly by a factor of ten and more; an integrand with a step needs 450 000 for 1e-4.
 //!
 //! Source: [Genz and Malik 1980](crate::cite::GENZ_MALIK_1980); the subdivision is that of `DCUHRE`.
 
@@ -25,8 +29,11 @@ pub const MAX_CELLS: usize = 40_000;
 /// The rule in words, for metadata.
 pub const NAME: &str = "adaptive subdivision, Genz-Malik rules of degree 7 and 5";
 
+/// How many times the difference of the two rules counts as error: peaks between few cells need it.
+const MARGIN: f64 = 2.0;
+
 /// Distances from the peaks at which the first cells end, rad.
-const NEAR: [f64; 2] = [0.02, 0.2];
+const NEAR: [f64; 3] = [0.02, 0.1, 0.4];
 
 /// Groups of points that share their weights: centre, two distances along x and y, two kinds of corners.
 const GROUPS: usize = 7;
@@ -202,7 +209,7 @@ impl Work<'_> {
             let rule =
                 |degree: usize| -> f64 { WEIGHTS.iter().zip(sums).map(|(w, s)| w[degree] * s[c]).sum() };
             value[c] = rule(0);
-            error[c] = (value[c] - rule(1)).abs();
+            error[c] = MARGIN * (value[c] - rule(1)).abs();
             // NaN must come up first, not hide at the bottom of the heap
             worst = if error[c].is_nan() { f64::INFINITY } else { worst.max(error[c]) };
             for (k, f) in fourth.iter_mut().enumerate() {

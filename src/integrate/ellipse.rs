@@ -15,9 +15,13 @@
 //! * graded from the horizon, or in the square root of the distance from it, as the lobe's [`Edge`] says;
 //! * ended at the curve `mu_i = mu_o`, which is `t = delta`, for lobes with a kink there.
 //!
-//! Measured: `tests/quadrature_charts.rs`.
+//! Measured over 500 draws of widths in [0.01, 1] and all views, at level 8: GGX 4e-11 at the median and 2e-7 for 99 %
+//! with 3200 evaluations, Beckmann 1e-8 and 4e-7 with 2300, Ward 8e-9 and 9e-8 with 2200. For equal widths a quarter of
+//! the evaluations suffices. What remains for wide GGX with a ratio above 4 is the plane of wi across the wide axis,
+//! where masking turns within the width of the narrow one: 1e-9 takes 20 000 evaluations there, and 4 % of the draws
+//! miss it.
 
-use super::graded::{Graded, Order};
+use super::graded::{Graded, Order, share_scales};
 use super::half_vector::{Row, fill, half_tangent};
 use super::nodes::Nodes;
 use super::view::View;
@@ -107,9 +111,11 @@ impl Ellipse {
     /// Panels of psi - psi_1 in (0, 2 pi): wm is across wo at 0 and pi, and along the narrow axis at two more angles.
     fn panels(&self) -> Vec<Panel> {
         let [ax, ay] = self.alpha;
-        // mu / s in phi, stretched to psi
+        // mu / s in phi, stretched to psi; a fold passes through the peak where it is across wo, in a layer as much
+        // narrower as the peak is narrow
         let stretch = self.width_1 * self.width_1 / (ax * ay);
-        let across = (self.view.mu / self.view.sine().max(1e-9) * stretch).clamp(1e-9, 1e3);
+        let layer = if self.edge == Edge::Fold { (2.0 * self.width_1).min(1.0) } else { 1.0 };
+        let across = (self.view.mu / self.view.sine().max(1e-9) * stretch * layer).clamp(1e-9, 1e3);
         let mut ends = vec![(0.0, across), (PI, across), (2.0 * PI, across)];
         let ratio = ax.min(ay) / ax.max(ay);
         if ratio < ROUND {
@@ -120,6 +126,7 @@ impl Ellipse {
             } else {
                 ends.extend([(narrow, ratio), (narrow + PI, ratio)]);
                 ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+                share_scales(&mut ends);
             }
         }
         let halves = ends.windows(2).flat_map(|pair| {

@@ -114,3 +114,12 @@ fn near_zero(y: f64) -> (f64, f64) {
     }
     (y * sinh, cosh)
 }
+
+/// Lowers the scales of panel ends `(position, scale)` to what their neighbours need: a peak that is wider than its
+/// distance to the next end reaches over it.
+pub fn share_scales(ends: &mut [(f64, f64)]) {
+    for i in 0..ends.len() {
+        let needed = ends.iter().map(|end| end.1 + (end.0 - ends[i].0).abs());
+        ends[i].1 = needed.fold(ends[i].1, f64::min);
+    }
+}

@@ -8,8 +8,8 @@
 //!
 //! The heights above that of wo are graded towards it, since `tan((theta_i + theta_o) / 2)` changes on its scale.
 //!
-//! Measured over 2000 views: without folds (Burley) 5e-13 at level 5.6 with 66 evaluations, with folds (Oren-Nayar,
-//! Fujii) 2e-13 at level 5.6 with about 280.
+//! Measured over 2000 views down to mu = 1e-5: without folds (Burley) 2e-12 at level 5.6 with 66 evaluations, with folds
+//! (Oren-Nayar, Fujii) at most 4e-10 at level 5.6 with 340, and rounding at level 8 with 630.
 
 use super::gauss;
 use super::graded::{Graded, Order};

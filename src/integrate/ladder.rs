@@ -74,32 +74,33 @@ pub fn integrate(
     add: &mut dyn FnMut(&Nodes, &mut Sums),
 ) -> Estimate {
     let mut evaluations = 0u32;
+    let mut used = 0;
     let mut sums_at = |level: f64| {
         let mut sums = [[0.0; MAX_CHANNELS]; MAX_PANELS];
         chart.visit(view, level, &mut |nodes| {
             evaluations = evaluations.saturating_add(u32::try_from(nodes.len).unwrap_or(u32::MAX));
+            used = used.max(nodes.panel + 1);
             add(nodes, &mut sums[nodes.panel]);
         });
-        sums
+        (sums, used)
     };
     let start = first_level(tolerance);
-    let mut coarse = sums_at(LEVELS[start]);
+    let (mut coarse, mut panels) = sums_at(LEVELS[start]);
     let mut error = [0.0; MAX_CHANNELS];
     for (j, &level) in LEVELS.iter().enumerate().skip(start + 1) {
-        let fine = sums_at(level);
-        error = differences(&fine, &coarse, channels, chart.gain(j));
+        let fine;
+        (fine, panels) = sums_at(level);
+        error = differences(&fine[..panels], &coarse[..panels], channels, chart.gain(j));
         coarse = fine;
         // NaN compares false and so never counts as done.
         if error[..channels].iter().all(|e| *e <= tolerance) {
             break;
         }
     }
-    Estimate { value: total(&coarse), error, evaluations }
+    Estimate { value: total(&coarse[..panels]), error, evaluations }
 }
 
-type Panels = [Sums; MAX_PANELS];
-
-fn total(panels: &Panels) -> Sums {
+fn total(panels: &[Sums]) -> Sums {
     let mut sums = [0.0; MAX_CHANNELS];
     for panel in panels {
         for (s, p) in sums.iter_mut().zip(panel) {
@@ -111,7 +112,7 @@ fn total(panels: &Panels) -> Sums {
 
 /// For each channel the sum over panels of the absolute differences, with a tenth of that of all channels (so that
 /// one channel that agrees by chance does not pass), over the gain, plus the rounding floor.
-fn differences(fine: &Panels, coarse: &Panels, channels: usize, gain: f64) -> Sums {
+fn differences(fine: &[Sums], coarse: &[Sums], channels: usize, gain: f64) -> Sums {
     let mut difference = [0.0; MAX_CHANNELS];
     let mut error = [0.0; MAX_CHANNELS];
     for c in 0..channels {

@@ -10,7 +10,8 @@
 //!
 //! No lobe is visited where its value is below 1e-17 of its peak.
 //!
-//! Measured: `tests/quadrature_charts.rs`.
+//! Measured over 2000 draws of n in [0.1, 1e5] and views down to mu = 1e-5: 6e-14 at the median and 5e-7 for 99 % at
+//! level 8 with 280 evaluations, 3e-13 for 99 % at level 15 with 910.
 
 use super::gauss;
 use super::graded::{Graded, Order};
@@ -39,7 +40,8 @@ pub fn visit(view: View, c: [f64; 3], n: f64, level: f64, visit: &mut dyn FnMut(
         if begin < last {
             lobe.arcs(begin, last, &mut nodes, visit);
         }
-    } else {
+    } else if begin.is_finite() {
+        // an axis straight down has no direction above the horizon within 90 degrees
         lobe.arcs(begin, (begin * begin + last * last).sqrt(), &mut nodes, visit);
     }
 }

@@ -96,9 +96,10 @@ impl Specular {
 }
 
 impl Brdf for Specular {
+    /// Guard: where both directions graze the value may leave the range of f64; it is capped at 1e300.
     fn eval(&self, wo: DVec3, wi: DVec3) -> f64 {
         match frame::half_vector(wo, wi) {
-            Some(h) if frame::both_above(wo, wi) => self.value(h.wh, h.cos_d, wo.z.max(wi.z)),
+            Some(h) if frame::both_above(wo, wi) => self.value(h.wh, h.cos_d, wo.z.max(wi.z)).min(1e300),
             _ => 0.0,
         }
     }

@@ -23,8 +23,7 @@ pub static INFO: ModelInfo = ModelInfo {
     ],
     params: &[KD, KS, N],
     laws: Laws { reciprocal: true, passive: true, isotropic: true },
-    notes: "kd + ks may not exceed 1. C makes int C (n.wh)^n mu dw = 1 at normal incidence; E falls off from there, to ks mu as n -> infinity \
-        at moderate angles and faster at grazing.",
+    notes: "kd + ks may not exceed 1. C makes int C (n.wh)^n mu dw = 1 at normal incidence; E falls off from there, to ks mu^2 as n -> infinity.",
     also: &[Alias { name: "blinn_phong_normalised_exact", set: &[] }],
     known: &[
         Known {

@@ -1,6 +1,7 @@
 //! Reflectance models: the trait, the registry, one file a model.
 //!
 //! To add a model: write `models/NAME.rs` with a [`ModelInfo`], add `pub mod NAME;` and one line to [`MODELS`].
+//! [`microfacet`] and [`lobes`] hold what models are put together from.
 //! The command line, recipe checks, test grids, file metadata and the README table follow from the registry.
 
 pub mod albedo_curve;
@@ -272,6 +273,13 @@ pub fn find(name: &str) -> Option<(&'static ModelInfo, Implied)> {
 }
 
 impl ModelInfo {
+    /// Parameters whose default is the value of another one.
+    pub fn followers<'a>(&self, leader: &'a str) -> impl Iterator<Item = &'static str> + use<'a> {
+        let follows =
+            move |p: &&Param| matches!(p.kind, Kind::Number { preset: Preset::Of(id), .. } if id == leader);
+        self.params.iter().filter(follows).map(|p| p.id)
+    }
+
     /// The sources as text: `Walter2007 Eq. 33`.
     #[must_use]
     pub fn source_lines(&self) -> Vec<String> {

@@ -24,7 +24,7 @@ pub static INFO: ModelInfo = ModelInfo {
     ],
     params: &PARAMS,
     laws: Laws { reciprocal: true, passive: false, isotropic: false },
-    notes: "Not passive: E grows as mu^(-1/2) at grazing (2.37 at 89.95 degrees, alpha = 0.7), so start the mu axis above 0; \
+    notes: "Not passive: E grows as mu^(-1/2) at grazing (2.37 at theta = 1.57, alpha = 0.7), so start the mu axis above 0; \
         elsewhere it loses energy, E -> rho_s mu as alpha -> 0. Widths below 1e-7 count as 1e-7.",
     also: &[Alias { name: "ward_1992_exact_exponent", set: &[] }],
     known: &[

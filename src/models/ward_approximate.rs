@@ -20,7 +20,7 @@ pub static INFO: ModelInfo = ModelInfo {
     sources: &[(cite::WARD_1992, "Eq. 5b (number recalled)")],
     params: &PARAMS,
     laws: Laws { reciprocal: true, passive: false, isotropic: false },
-    notes: "Not passive: E grows as mu^(-1/2) at grazing (4.8 at 89.95 degrees, alpha = 1), so start the mu axis above 0. \
+    notes: "Not passive: E grows as mu^(-1/2) at grazing (4.8 at theta = 1.57, alpha = 1), so start the mu axis above 0. \
         Widths below 1e-7 count as 1e-7.",
     also: &[Alias { name: "ward_seed_approx_exponent", set: &[] }],
     known: &[

@@ -17,7 +17,7 @@ pub static INFO: ModelInfo = ModelInfo {
     sources: &[(cite::DUER_2006, "the improved normalisation (equation number not verified)")],
     params: &PARAMS,
     laws: Laws { reciprocal: true, passive: false, isotropic: false },
-    notes: "Not passive: E grows as 1/mu at grazing (107 at 89.95 degrees, alpha = 0.7), so start the mu axis above 0. \
+    notes: "Not passive: E grows as 1/mu at grazing (107 at theta = 1.57, alpha = 0.7), so start the mu axis above 0. \
         E -> rho_s as alpha -> 0. Widths below 1e-7 count as 1e-7.",
     also: &[Alias { name: "ward_duer", set: &[] }],
     known: &[

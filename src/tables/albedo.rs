@@ -23,7 +23,7 @@ pub static INFO: TableInfo = TableInfo {
     params: &[],
     laws: &["finite", "range", "energy", "cross-check", "reciprocity"],
     axes: default_axes,
-    notes: "Axes: mu, and any number parameter of the model (alpha or roughness, f0, eta, ...).",
+    notes: "Axes: mu, phi (the view azimuth, for anisotropic models), and any number parameter of the model (alpha or roughness, f0, eta, ...).",
     bind,
 };
 

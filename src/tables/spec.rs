@@ -186,9 +186,11 @@ impl Spec {
     #[must_use]
     pub fn swept(&self) -> Vec<&'static str> {
         let mut ids: Vec<&'static str> = self.grid.axes().iter().map(|a| a.quantity.base_id()).collect();
-        if let Some((_, params)) = self.model.as_ref().filter(|_| ids.contains(&"alpha")) {
-            let follows = |id: &&str| (params.number(id) - params.number("alpha")).abs() == 0.0;
-            ids.extend(["alpha_x", "alpha_y"].iter().filter(|id| follows(id)));
+        if let Some((info, params)) = &self.model {
+            for leader in ids.clone() {
+                let follows = |id: &&str| (params.number(id) - params.number(leader)).abs() == 0.0;
+                ids.extend(info.followers(leader).filter(follows));
+            }
         }
         ids
     }

@@ -66,12 +66,10 @@ impl Sweep {
         for &(i, id) in &self.swept {
             let before = params.number(id);
             params.set(id, at[i]);
-            // alpha_x and alpha_y follow alpha unless they were set apart
-            if id == "alpha" {
-                for other in ["alpha_x", "alpha_y"] {
-                    if (params.number(other) - before).abs() == 0.0 {
-                        params.set(other, at[i]);
-                    }
+            // alpha_x and alpha_y follow alpha, nv follows nu, unless they were set apart
+            for other in self.info.followers(id) {
+                if (params.number(other) - before).abs() == 0.0 {
+                    params.set(other, at[i]);
                 }
             }
         }
@@ -81,8 +79,13 @@ impl Sweep {
     /// The rule that integrates the model, in words.
     #[must_use]
     pub fn rule(&self) -> String {
-        let chart = (self.info.build)(&self.params).ok().and_then(|m| m.chart());
-        chart.map_or("none: the model has no chart", |c| c.name()).to_owned()
+        let Ok(model) = (self.info.build)(&self.params) else {
+            return "none: the model refuses the parameters".to_owned();
+        };
+        if model.parts().is_some() {
+            return "Gauss-Legendre in the charts of its lobes".to_owned();
+        }
+        model.chart().map_or("adaptive subdivision", |c| c.name()).to_owned()
     }
 
     /// The model at a point.

@@ -2,6 +2,7 @@
 
 use brdfbake::integrate::{Estimate, View};
 use brdfbake::models::{self, Brdf, Params};
+use brdfbake::tables::average_albedo;
 use brdfbake::tables::integral::{Functional, integrate};
 use serde_json::{Map, Value};
 
@@ -24,6 +25,11 @@ pub(crate) fn quadrature(model: &dyn Brdf, view: impl Into<View>, tolerance: f64
 /// E as tables get it.
 pub(crate) fn albedo(model: &dyn Brdf, view: impl Into<View>, tolerance: f64) -> f64 {
     integrate(model, view, &[Functional::One], tolerance).unwrap().value[0]
+}
+
+/// E_avg as tables get it.
+pub(crate) fn average(name: &str, params: &str, tolerance: f64) -> f64 {
+    average_albedo::average(&*model(name, params), 1.0, tolerance).unwrap().value[0]
 }
 
 /// Records of a CSV file below `tests/values`, by column name.

@@ -53,3 +53,25 @@ fn albedos() {
         assert!(off <= 1e-11 + known, "{what}: off by {off:e} as tables get it");
     }
 }
+
+#[test]
+fn ashikhmin_shirley_draws_its_half_vectors_as_published() {
+    let mut count = 0;
+    for row in records("points_sampling.csv") {
+        if !row["model"].starts_with("sample_ashikhmin_shirley_h") {
+            continue;
+        }
+        let p: serde_json::Value = serde_json::from_str(&row["params_json"]).unwrap();
+        let f = model("ashikhmin-shirley-specular", &format!(r#"{{"nu": {}, "nv": {}}}"#, p["nu"], p["nv"]));
+        // a quarter of the second number is the first quadrant; heights that the row does not give are small here
+        let u = glam::DVec2::new(p["u2"].as_f64().unwrap_or(1e-6), 0.25 * p["u1"].as_f64().unwrap());
+        let Some(s) = f.sample(glam::DVec3::Z, u) else { continue };
+        let wh = (s.wi + glam::DVec3::Z).normalize();
+        let got = if row["model"].contains("phi") { frame::phi(wh) } else { wh.z };
+        let expected: f64 = row["value"].parse().unwrap();
+        assert!((got - expected).abs() <= 1e-12, "{} {p}: {got} and {expected}", row["model"]);
+        count += 1;
+    }
+    // one of the heights reflects below the horizon
+    assert_eq!(count, 13);
+}

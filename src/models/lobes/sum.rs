@@ -20,13 +20,6 @@ impl Part {
     pub fn new(reflectance: f64, lobe: impl Brdf + 'static) -> Part {
         Part { weight: reflectance, chance: reflectance, lobe: Box::new(lobe) }
     }
-
-    /// A part with another weight.
-    #[must_use]
-    pub fn weighing(mut self, weight: f64) -> Part {
-        self.weight = weight;
-        self
-    }
 }
 
 /// `f = sum of weight * lobe`.
