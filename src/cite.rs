@@ -72,6 +72,8 @@ cites! {
     HEITZ_2015 = "Heitz2015", "Heitz, Dupuy, Crassin, Dachsbacher: The SGGX Microflake Distribution, ACM TOG 34(4)", 2015, "https://doi.org/10.1145/2766988";
     /// Heitz and others, linearly transformed cosines.
     HEITZ_2016 = "Heitz2016", "Heitz, Dupuy, Hill, Neubelt: Real-Time Polygonal-Light Shading with Linearly Transformed Cosines, ACM TOG 35(4)", 2016, "https://doi.org/10.1145/2897824.2925895";
+    /// Heitz and others, multiple scattering on Smith surfaces.
+    HEITZ_2016_MULTIPLE = "Heitz2016b", "Heitz, Hanika, d'Eon, Dachsbacher: Multiple-Scattering Microfacet BSDFs with the Smith Model, ACM TOG 35(4)", 2016, "https://doi.org/10.1145/2897824.2925943";
     /// Heitz, sampling of GGX visible normals.
     HEITZ_2018 = "Heitz2018", "Heitz: Sampling the GGX Distribution of Visible Normals, JCGT 7(4)", 2018, "https://jcgt.org/published/0007/04/01/";
     /// Heitz and d'Eon, sampling of visible normals.

@@ -5,6 +5,7 @@
 
 pub mod broad;
 pub mod chart;
+pub mod facet;
 pub mod gauss;
 pub mod graded;
 pub mod half_vector;
