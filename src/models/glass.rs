@@ -1,6 +1,6 @@
 //! The body of rough dielectric interfaces that reflect and transmit.
 //!
-//! Both parts are integrated over facet normals in [`facet`](crate::integrate::facet) coordinates, with `wo` fixed:
+//! Both parts are integrated over facet normals in [`facet`] coordinates, with `wo` fixed:
 //!
 //! ```text
 //! R(mu) = int F D 4 c V mu_i dwm,  T(mu) = int (1 - F) D c G2(wo, wt) / mu dwm,  c = wo . wm
