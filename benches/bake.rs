@@ -14,7 +14,10 @@ mod common;
 
 use brdfbake::grid::{Table, Texel};
 use brdfbake::tables::Bound;
+use brdfbake::tables::integral::Functional;
+use brdfbake::tables::sweep::Sweep;
 use brdfbake::verify::baseline::{hammersley_f32, hammersley_f64};
+use brdfbake::verify::cross_check::estimate;
 use common::{axis, bake, request};
 use std::time::Instant;
 
@@ -81,7 +84,26 @@ fn split_sum(len: usize) {
     }
     let (seconds, v) =
         time(1, || points.iter().flat_map(|p| hammersley_f64(p[0], p[1], 1024)).collect::<Vec<f64>>());
+    sampled(&reference, &bound);
     row("1024 Hammersley points, f64", seconds, largest(&reference, |i| v[i]), 1024.0);
+}
+
+/// The independent integrator of the cross-check: visible normals at scrambled Sobol points.
+fn sampled(reference: &Table, bound: &Bound) {
+    let sweep = Sweep::new(&bound.spec, true).unwrap();
+    for points in [64u32, 1024] {
+        let (seconds, values) = time(1, || {
+            let texel = |t| {
+                let p = bound.spec.grid.texel(t);
+                let model = sweep.model(p.values()).unwrap();
+                let weights = [Functional::SchlickComplement, Functional::Schlick];
+                estimate(&*model, p.values()[0], weights, t as u64, 1, points).map(|e| e.mean)
+            };
+            (0..bound.spec.grid.len()).flat_map(texel).collect::<Vec<f64>>()
+        });
+        let name = format!("{points} visible normals, scrambled Sobol, f64");
+        row(&name, seconds, largest(reference, |i| values[i]), points.into());
+    }
 }
 
 fn albedo() {

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 /// The folder of shared reference values, if `BRDFBAKE_SHARED` names it; says so if not.
-pub fn shared() -> Option<PathBuf> {
+pub(crate) fn shared() -> Option<PathBuf> {
     let dir = std::env::var_os("BRDFBAKE_SHARED").map(PathBuf::from);
     if dir.is_none() {
         eprintln!("SKIPPED: set BRDFBAKE_SHARED to the folder of shared reference values to run this test");
@@ -23,7 +23,7 @@ pub fn shared() -> Option<PathBuf> {
 }
 
 /// Reads a little-endian f64 `.npy` file: shape and values in C order.
-pub fn npy(path: &std::path::Path) -> (Vec<usize>, Vec<f64>) {
+pub(crate) fn npy(path: &std::path::Path) -> (Vec<usize>, Vec<f64>) {
     let bytes = std::fs::read(path).unwrap();
     let header_len = usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
     let header = std::str::from_utf8(&bytes[10..10 + header_len]).unwrap();
@@ -35,11 +35,11 @@ pub fn npy(path: &std::path::Path) -> (Vec<usize>, Vec<f64>) {
     (shape, values)
 }
 
-pub fn axis(id: &str, len: usize, texel: Texel) -> Axis {
+pub(crate) fn axis(id: &str, len: usize, texel: Texel) -> Axis {
     Axis::new(Quantity::find(id).unwrap(), len, texel)
 }
 
-pub fn request(kind: &str, layout: &str, params: &str, axes: Vec<Axis>) -> Bound {
+pub(crate) fn request(kind: &str, layout: &str, params: &str, axes: Vec<Axis>) -> Bound {
     let request = Request {
         kind: kind.to_owned(),
         layout: Some(layout.to_owned()),
@@ -50,7 +50,7 @@ pub fn request(kind: &str, layout: &str, params: &str, axes: Vec<Axis>) -> Bound
     request.bind().unwrap()
 }
 
-pub fn bake(bound: &Bound, tolerance: f64) -> Result<Table, BakeError> {
+pub(crate) fn bake(bound: &Bound, tolerance: f64) -> Result<Table, BakeError> {
     let cancel = AtomicBool::new(false);
     driver::bake(bound, Options { tolerance, on_miss: OnMiss::Fail, cancel: &cancel, progress: &|_| {} })
 }

@@ -3,8 +3,10 @@
 
 use brdfbake::math::frame;
 use brdfbake::models::{MODELS, ModelInfo, Params, Quantity};
+use brdfbake::tables::TexelError;
 use brdfbake::tables::integral::{Functional, integrate};
 use serde_json::{Map, Value};
+use std::f64::consts::TAU;
 
 fn params(info: &'static ModelInfo, set: &[(&str, &str)]) -> Params {
     let map: Map<String, Value> =
@@ -26,8 +28,8 @@ fn known_values_are_reproduced() {
                     // by the chart and, where there is one, by the reduction
                     let tolerance = (0.1 * known.relative * known.value).max(1e-13);
                     let both = [Functional::One, Functional::One];
-                    let chart = integrate(&*model, info.id, mu, &both, tolerance).unwrap();
-                    let reduced = integrate(&*model, info.id, mu, &[Functional::One], tolerance).unwrap();
+                    let chart = integrate(&*model, mu, &both, tolerance).unwrap();
+                    let reduced = integrate(&*model, mu, &[Functional::One], tolerance).unwrap();
                     let apart = (chart.value[0] - reduced.value[0]).abs();
                     assert!(
                         apart <= chart.error[0] + reduced.error[0] + 1e-13,
@@ -59,7 +61,7 @@ fn every_model_holds_the_laws_that_it_claims() {
             let set: &[(&str, &str)] = if has_alpha { &[("alpha", alpha)] } else { &[] };
             let model = (info.build)(&params(info, set)).unwrap();
             for _ in 0..200 {
-                let mut direction = || frame::spherical(1.55 * seeds.unit(), 6.28 * seeds.unit());
+                let mut direction = || frame::spherical(1.55 * seeds.unit(), TAU * seeds.unit());
                 let (a, b) = (direction(), direction());
                 let (forth, back) = (model.eval(a, b), model.eval(b, a));
                 assert!(forth.is_finite() && forth >= 0.0, "{} alpha {alpha}: f = {forth}", info.id);
@@ -73,7 +75,11 @@ fn every_model_holds_the_laws_that_it_claims() {
                 }
             }
             for mu in [0.0, 1e-3, 0.05, 0.3, 0.7, 1.0] {
-                let e = integrate(&*model, info.id, mu, &[Functional::One], 1e-4).unwrap();
+                let e = match integrate(&*model, mu, &[Functional::One], 1e-4) {
+                    // some of those that are not passive have an infinite albedo at grazing, and say so
+                    Err(TexelError::NotFinite { .. }) if mu <= 0.0 && !info.laws.passive => continue,
+                    e => e.unwrap(),
+                };
                 if info.laws.passive {
                     assert!(
                         e.value[0] <= 1.0 + e.error[0],
@@ -92,6 +98,16 @@ fn a_model_that_is_not_passive_is_known_not_to_be() {
     // Cook-Torrance as printed is four times the modern form: E -> 4 at small alpha
     let info = MODELS.iter().find(|m| m.id == "cook-torrance-1982").unwrap();
     let model = (info.build)(&params(info, &[("alpha", "0.05")])).unwrap();
-    let e = integrate(&*model, info.id, 1.0, &[Functional::One], 1e-3).unwrap();
+    let e = integrate(&*model, 1.0, &[Functional::One], 1e-3).unwrap();
     assert!((e.value[0] - 4.0).abs() < 0.01, "{}", e.value[0]);
+}
+
+#[test]
+fn no_model_breaks_a_law_that_it_claims() {
+    use brdfbake::verify::survey::{Verdict, survey};
+    for info in MODELS {
+        let s = survey(info);
+        assert_ne!(s.verdict, Verdict::Defect, "{}: {}", info.id, s.words);
+        assert!(info.laws.passive || s.verdict == Verdict::KnownBreach, "{}: {}", info.id, s.words);
+    }
 }

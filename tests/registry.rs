@@ -45,6 +45,12 @@ fn check_params(owner: &str, params: &[Param]) {
                 }
             }
             Kind::Choice(words) => assert!(words.len() > 1, "{owner}.{}: nothing to choose", p.id),
+            Kind::Rows { columns, preset } => {
+                assert!(!columns.is_empty(), "{owner}.{}: rows of nothing", p.id);
+                for row in preset {
+                    assert_eq!(row.len(), columns.len(), "{owner}.{}: default row", p.id);
+                }
+            }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! `brdfbake albedo MODEL --param k=v --mu 0.1,0.5 --tolerance 1e-8`: E, and T of models that transmit.
 
 use super::{Exit, Failure, output};
+use crate::integrate::View;
 use crate::models::{self, Params};
 use crate::tables::integral::{Functional, integrate};
 use serde_json::{Map, Value as Json};
@@ -16,6 +17,9 @@ pub struct Args {
     /// View cosines, separated by commas.
     #[arg(long, value_name = "MU", value_delimiter = ',', default_value = "0.05,0.1,0.25,0.5,0.75,1")]
     mu: Vec<f64>,
+    /// View azimuth from the tangent, in radians; it matters to anisotropic models only.
+    #[arg(long, value_name = "PHI", default_value_t = 0.0)]
+    phi: f64,
     /// Absolute tolerance of E.
     #[arg(short, long, default_value_t = 1e-8)]
     tolerance: f64,
@@ -35,6 +39,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if !(args.tolerance > 0.0 && args.tolerance.is_finite()) {
         return Err(Failure::usage(format!("--tolerance {} must be a positive number", args.tolerance)));
     }
+    if !args.phi.is_finite() {
+        return Err(Failure::usage(format!("--phi {} must be a number of radians", args.phi)));
+    }
     let given = parse_params(&args.params)?;
     let (info, model) = build(&args.model, &given)?;
     let mut text = String::new();
@@ -52,7 +59,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         // twice the same functional asks for the chart: reductions exist for a single one only
         let functionals: &[Functional] =
             if args.chart { &[Functional::One, Functional::One] } else { &[Functional::One] };
-        let e = integrate(&*model, info.id, mu, functionals, args.tolerance)
+        let e = integrate(&*model, View { mu, phi: args.phi }, functionals, args.tolerance)
             .map_err(|e| Failure::new(Exit::Unsupported, format!("{}: mu = {mu}: {e}", info.id)))?;
         let through = model.transmission().and_then(|t| t.albedo(mu, args.tolerance));
         let through = through.map(|t| (t.value[0], t.error[0]));
@@ -84,14 +91,16 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// `key=value` pairs as JSON: numbers where they parse as such, else words.
+/// `key=value` pairs as JSON: numbers and lists where they parse as such, else words.
 pub(super) fn parse_params(params: &[String]) -> Result<Map<String, Json>, Failure> {
     let mut map = Map::new();
     for param in params {
         let (key, value) = param.split_once('=').ok_or_else(|| {
             Failure::usage(format!("--param {param}: expected KEY=VALUE, such as alpha=0.25"))
         })?;
-        let json = value.parse::<f64>().map_or_else(|_| Json::from(value), Json::from);
+        let list = || serde_json::from_str(value).ok().filter(Json::is_array);
+        let word = || list().unwrap_or_else(|| Json::from(value));
+        let json = value.parse::<f64>().map_or_else(|_| word(), Json::from);
         map.insert(key.to_owned(), json);
     }
     Ok(map)

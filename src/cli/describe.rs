@@ -164,6 +164,11 @@ fn params(params: &[Param]) -> String {
                 format!("[{min}, {max}], default {default}")
             }
             Kind::Choice(words) => format!("{}; default {}", words.join(" | "), words.first().unwrap_or(&"")),
+            Kind::Rows { columns, preset } => {
+                let columns: Vec<String> =
+                    columns.iter().map(|c| format!("{} in [{}, {}]", c.id, c.min, c.max)).collect();
+                format!("list of rows ({}), default {preset:?}", columns.join(", "))
+            }
         };
         text.push_str(&format!("  {} ({range}): {}\n", p.id, p.doc));
     }

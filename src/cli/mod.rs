@@ -7,8 +7,10 @@ pub mod diff;
 pub mod eval;
 pub mod exit;
 pub mod inspect;
+pub mod laws;
 pub mod list;
 pub mod output;
+pub mod plot;
 pub mod progress;
 pub mod scene;
 
@@ -37,6 +39,10 @@ enum Verb {
     Eval(eval::Args),
     /// Print the directional albedo of a model with its error estimate.
     Albedo(albedo::Args),
+    /// Check reciprocity and energy of models over their domain.
+    Laws(laws::Args),
+    /// Draw the lobe of a model as a polar plot.
+    Plot(plot::Args),
     /// List models, functions, tables, presets, formats, laws or quantities.
     List(list::Args),
     /// Describe a model, function, table, preset, law or quantity.
@@ -54,6 +60,8 @@ pub fn run(cli: Cli, cancel: &Arc<AtomicBool>) -> Result<Exit, Failure> {
         Verb::Diff(args) => diff::run(&args),
         Verb::Eval(args) => eval::run(&args),
         Verb::Albedo(args) => albedo::run(&args),
+        Verb::Laws(args) => laws::run(&args),
+        Verb::Plot(args) => plot::run(&args, cancel),
         Verb::List(args) => list::run(&args),
         Verb::Describe(args) => describe::run(&args),
     }

@@ -2,7 +2,7 @@
 
 use super::progress::Format;
 use super::{Exit, Failure, output};
-use crate::recipe::Plan;
+use crate::recipe::{self, Plan};
 use crate::scene::{self, Limits, Needs};
 use std::path::Path;
 
@@ -21,7 +21,17 @@ pub(super) fn plan(path: &Path, quiet: bool, format: Format) -> Result<Option<Pl
     if needs.needs.is_empty() {
         return Ok(None);
     }
-    crate::recipe::from_scene(&scene.file_name, &needs).map(Some).map_err(Failure::input)
+    let mut plans = Vec::new();
+    for need in &needs.needs {
+        let preset = recipe::preset(need.table).ok_or_else(|| {
+            Failure::new(
+                Exit::Unsupported,
+                format!("no preset bakes the {} tables that the scene needs", need.table),
+            )
+        })?;
+        plans.push(preset.plan().map_err(|e| Failure::new(Exit::Internal, e))?);
+    }
+    Plan::join("scene", plans).map(Some).map_err(|e| Failure::new(Exit::Internal, e))
 }
 
 fn human(scene: &scene::Scene, needs: &Needs) {

@@ -177,6 +177,12 @@ impl Storage {
         self.coding().ulp(value, range)
     }
 
+    /// True if it encodes the range of the channel, which must then be finite.
+    #[must_use]
+    pub const fn is_bounded(self) -> bool {
+        matches!(self.coding(), Coding::Unorm { .. })
+    }
+
     /// The tolerance that suits this storage when the recipe names none: half a step just below 1.
     #[must_use]
     pub fn default_tolerance(self) -> f64 {

@@ -17,7 +17,7 @@ const END: f64 = 3.2;
 
 /// Calls `visit` with batches of nodes that cover the hemisphere for one view cosine.
 pub fn visit(mu_o: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
-    let mut nodes = Nodes::new(mu_o);
+    let mut nodes = Nodes::new(mu_o.into());
     let scale = (mu_o / (nodes.sin_o.max(1e-9) * PI)).clamp(1e-9, 1e3);
     let azimuth = Graded::new(scale, AZIMUTH, level);
     let mut ends = [0.0, mu_o.min(0.5), mu_o.max(0.5), 1.0];
@@ -81,6 +81,8 @@ fn row(nodes: &mut Nodes, azimuth: &Graded, mu_i: f64, sin_i: f64, width: f64) {
         nodes.sin_h[j] = (flat.sqrt() / length).min(1.0);
         let x = sin_o + sin_i * cos_phi_i;
         nodes.cos_phi[j] = if flat > 0.0 { (x / flat.sqrt()).clamp(-1.0, 1.0) } else { 1.0 };
+        let c = nodes.cos_phi[j];
+        nodes.sin_phi[j] = ((1.0 - c) * (1.0 + c)).max(0.0).sqrt();
         nodes.weight[j] = 2.0 * PI * azimuth.weight[j] * width;
     }
 }

@@ -5,6 +5,7 @@
 
 use super::gauss;
 use super::nodes::BATCH;
+use crate::math::exp::exp;
 
 /// Order of a panel at `level`: `level (c0 + c1 L)` rounded, between 2 and [`BATCH`].
 ///
@@ -35,17 +36,81 @@ impl Graded {
     /// The rule of a panel of length 1 for the scale `eps > 0`.
     #[must_use]
     pub fn new(eps: f64, order: Order, level: f64) -> Graded {
+        let mut rule = Graded::empty();
+        rule.set(eps, order, level);
+        rule
+    }
+
+    /// A rule without nodes, to be [`set`](Graded::set).
+    #[must_use]
+    pub fn empty() -> Graded {
+        Graded { len: 0, node: [0.0; BATCH], weight: [0.0; BATCH] }
+    }
+
+    /// Makes this the rule of another scale, order and level, in place.
+    pub fn set(&mut self, eps: f64, order: Order, level: f64) {
+        self.set_between(eps, order, level, [0.0, 1.0]);
+    }
+
+    /// A rule of (lo, hi) within (0, 1), graded towards 0 as [`Graded::new`]; its weights sum to hi - lo.
+    ///
+    /// Two of them that meet at a kink are as good as one rule without it.
+    #[must_use]
+    pub fn between(eps: f64, order: Order, level: f64, span: [f64; 2]) -> Graded {
+        let mut rule = Graded::empty();
+        rule.set_between(eps, order, level, span);
+        rule
+    }
+
+    /// As [`Graded::between`], in place.
+    fn set_between(&mut self, eps: f64, order: Order, level: f64, [lo, hi]: [f64; 2]) {
         let ratio = 1.0 / eps.max(1e-300);
-        let l = libm::asinh(ratio);
+        let start = if lo > 0.0 { libm::asinh(ratio * lo) } else { 0.0 };
+        let l = libm::asinh(ratio * hi) - start;
         let rule = gauss::rule(order.at(level, l));
+        let n = rule.nodes.len();
+        self.len = n;
+        let (nodes, weights) = (&rule.nodes[..n], &rule.weights[..n]);
+        let (node, weight) = (&mut self.node[..n], &mut self.weight[..n]);
+        let scale = 1.0 / ratio;
+        if start + l < 1.0 {
+            // sinh y = (e^y - e^-y) / 2 would cancel here
+            for i in 0..n {
+                let (sinh, cosh) = near_zero(start + l * nodes[i]);
+                node[i] = sinh * scale;
+                weight[i] = cosh * (l * scale * weights[i]);
+            }
+        } else {
+            for i in 0..n {
+                let e = exp(start + l * nodes[i]);
+                let inverse = 1.0 / e;
+                node[i] = 0.5 * (e - inverse) * scale;
+                weight[i] = 0.5 * (e + inverse) * (l * scale * weights[i]);
+            }
+        }
+    }
+
+    /// The rule of a panel whose integrand holds the square root of the variable: `t = x^2`.
+    #[must_use]
+    pub fn root(order: Order, level: f64) -> Graded {
+        let rule = gauss::rule(order.at(level, 0.0));
         let mut out = Graded { len: rule.nodes.len(), node: [0.0; BATCH], weight: [0.0; BATCH] };
         for (i, (&x, &w)) in rule.nodes.iter().zip(&rule.weights).enumerate() {
-            // sinh and cosh from one expm1, without cancellation at small arguments.
-            let m = libm::expm1(l * x);
-            let inverse = 1.0 / (1.0 + m);
-            out.node[i] = 0.5 * m * (1.0 + inverse) / ratio;
-            out.weight[i] = 0.5 * (1.0 + m + inverse) * l * w / ratio;
+            out.node[i] = x * x;
+            out.weight[i] = 2.0 * x * w;
         }
         out
     }
+}
+
+/// sinh and cosh for |y| <= 1 by their series to y^17 (remainder below 1e-17).
+fn near_zero(y: f64) -> (f64, f64) {
+    let q = y * y;
+    let (mut sinh, mut cosh) = (1.0, 1.0);
+    for k in (1..=8u32).rev() {
+        let k = 2.0 * f64::from(k);
+        sinh = 1.0 + sinh * (q / (k * (k + 1.0)));
+        cosh = 1.0 + cosh * (q / (k * (k - 1.0)));
+    }
+    (y * sinh, cosh)
 }

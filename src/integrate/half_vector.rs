@@ -1,4 +1,4 @@
-//! The half-vector chart: wm in polar coordinates round the normal, with the horizon as a coordinate line.
+//! The half-vector chart of isotropic models: wm in polar coordinates round the normal, with the horizon as a coordinate line.
 //!
 //! With `wo = (s, 0, mu)`, `wm = (sin t cos p, sin t sin p, cos t)`, `v = wo . wm` and `wi = 2 v wm - wo`:
 //!
@@ -22,6 +22,7 @@
 
 use super::graded::{Graded, Order};
 use super::nodes::{BATCH, Nodes};
+use std::cell::Cell;
 use std::f64::consts::FRAC_PI_2;
 
 const AZIMUTH_FRONT: Order = Order(1.0, 0.25);
@@ -32,25 +33,67 @@ const HORIZON: Order = Order(1.0, 0.25);
 /// Widest and narrowest scale that the gradings are built for.
 const ALPHA_RANGE: [f64; 2] = [1e-8, 4.0];
 
-/// Geometry of one azimuth: cosine, R, and tangents of t_max / 2 and t_max / 4.
-struct Row {
-    cos_phi: f64,
-    r: f64,
-    half: f64,
-    quarter: f64,
+/// Geometry of one azimuth of wm: its direction, R, and tangents of t_max / 2 and t_max / 4.
+pub(super) struct Row {
+    pub(super) cos_phi: f64,
+    pub(super) sin_phi: f64,
+    /// The part of wo along the azimuth.
+    along: f64,
+    pub(super) r: f64,
+    pub(super) half: f64,
+    pub(super) quarter: f64,
 }
 
 impl Row {
-    fn new(cos_phi: f64, sin_o: f64, mu: f64) -> Row {
-        let a = sin_o * cos_phi;
+    /// From the azimuth of wm and the part `a` of wo along it, `a = sin_o cos(phi - phi_o)`.
+    pub(super) fn new(cos_phi: f64, sin_phi: f64, a: f64, mu: f64) -> Row {
         let r = (a * a + mu * mu).sqrt();
         // sin and cos of t_max from cos(2 t_max) = -a / r; the small one of 1 +- a/r as mu^2 / (r (r + |a|)).
         let near = mu / (2.0 * r * (r + a.abs())).sqrt();
         let far = ((r + a.abs()) / (2.0 * r)).sqrt();
         let (sin, cos) = if a >= 0.0 { (far, near) } else { (near, far) };
         let half = sin / (1.0 + cos);
-        Row { cos_phi, r, half, quarter: half / (1.0 + (1.0 + half * half).sqrt()) }
+        Row { cos_phi, sin_phi, along: a, r, half, quarter: half / (1.0 + (1.0 + half * half).sqrt()) }
     }
+
+    /// From the azimuth of wm relative to wo.
+    fn relative(cos_phi: f64, sin_o: f64, mu: f64) -> Row {
+        let sin_phi = ((1.0 - cos_phi) * (1.0 + cos_phi)).max(0.0).sqrt();
+        Row::new(cos_phi, sin_phi, sin_o * cos_phi, mu)
+    }
+
+    /// Tangent of half the angle from the horizon at which D ends, if it ends at half tangent `end`; 0 beyond.
+    pub(super) fn above_horizon(&self, end: f64) -> f64 {
+        ((self.half - end) / (1.0 + self.half * end)).max(0.0)
+    }
+}
+
+/// The arrays of one call.
+struct Workspace {
+    /// Nodes near the peak, and nodes towards the horizon: rows are gathered until a batch is full.
+    near: Nodes,
+    far: Nodes,
+    azimuth: Graded,
+    peak: Graded,
+    horizon: Graded,
+}
+
+impl Default for Workspace {
+    fn default() -> Workspace {
+        let empty = Graded::empty;
+        Workspace {
+            near: Nodes::new(1.0.into()),
+            far: Nodes::new(1.0.into()),
+            azimuth: empty(),
+            peak: empty(),
+            horizon: empty(),
+        }
+    }
+}
+
+thread_local! {
+    /// The workspace of the last call on this thread; a nested call finds none and makes its own.
+    static SPARE: Cell<Option<Box<Workspace>>> = const { Cell::new(None) };
 }
 
 /// Calls `visit` with batches of nodes that cover the hemisphere for one view cosine.
@@ -59,68 +102,136 @@ impl Row {
 pub fn visit(mu_o: f64, alpha: f64, reach: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
     let alpha = alpha.clamp(ALPHA_RANGE[0], ALPHA_RANGE[1]);
     let end = half_tangent(reach * alpha);
-    let mut nodes = Nodes::new(mu_o);
-    let (s, mu) = (nodes.sin_o, mu_o);
+    // the arrays are kept from call to call: clearing them would cost as much as a coarse level
+    let mut space = SPARE.take().unwrap_or_default();
+    let Workspace { near, far, azimuth, peak, horizon } = &mut *space;
+    near.reset(mu_o.into());
+    far.reset(mu_o.into());
+    let (s, mu) = (near.sin_o, mu_o);
     let azimuth_scale = (mu / (s.max(1e-9) * FRAC_PI_2)).clamp(1e-9, 1e3);
     for (front, order) in [(true, AZIMUTH_FRONT), (false, AZIMUTH_BACK)] {
         // at mu = 0 the far half of the azimuth sees no light: t_max is 0 there
         if !front && mu <= 0.0 {
             continue;
         }
-        let azimuth = Graded::new(azimuth_scale, order, level);
+        azimuth.set(azimuth_scale, order, level);
         // Gradings are shared by the rows of a side; the row at phi = 0 (or pi/2) is the most demanding one.
-        let hardest = Row::new(if front { 1.0 } else { 0.0 }, s, mu.max(1e-12));
-        let peak = Graded::new(0.5 * alpha / hardest.quarter.min(end), PEAK, level);
-        let near = (mu.min(3.0 * alpha) / (2.0 * hardest.r)).clamp(1e-9, 1.0);
-        let horizon = Graded::new(0.5 * near / hardest.quarter, HORIZON, level);
+        let hardest = Row::relative(if front { 1.0 } else { 0.0 }, s, mu.max(1e-12));
+        peak.set(0.5 * alpha / hardest.quarter.min(end), PEAK, level);
+        let scale = (mu.min(3.0 * alpha) / (2.0 * hardest.r)).clamp(1e-9, 1.0);
+        horizon.set(0.5 * scale / hardest.quarter, HORIZON, level);
+        near.panel = if front { 0 } else { 2 };
+        far.panel = near.panel + 1;
         for j in 0..azimuth.len {
             let sine = libm::sin(FRAC_PI_2 * azimuth.node[j]);
-            let row = Row::new(if front { sine } else { -sine }, s, mu);
+            let row = Row::relative(if front { sine } else { -sine }, s, mu);
             // 2 for the mirror half of the azimuth.
             let width = 2.0 * FRAC_PI_2 * azimuth.weight[j];
-            nodes.panel = if front { 0 } else { 2 };
-            fill(&mut nodes, &row, &peak, width, [0.0, row.quarter.min(end)], false);
-            visit(&nodes);
+            flush(near, peak.len, visit);
+            fill_peak(near, &row, peak, width, row.quarter.min(end));
             // distance from the horizon at which D ends; beyond the half way point nothing is left
-            let near_end = ((row.half - end) / (1.0 + row.half * end)).max(0.0);
+            let near_end = row.above_horizon(end);
             if near_end < row.quarter {
-                nodes.panel += 1;
-                fill(&mut nodes, &row, &horizon, width, [near_end, row.quarter], true);
-                visit(&nodes);
+                flush(far, horizon.len, visit);
+                fill_horizon(far, &row, horizon, width, [near_end, row.quarter]);
             }
         }
+        flush(near, BATCH, visit);
+        flush(far, BATCH, visit);
+    }
+    SPARE.set(Some(space));
+}
+
+/// Visits a batch that has no room for `more` nodes, and empties it.
+fn flush(nodes: &mut Nodes, more: usize, visit: &mut dyn FnMut(&Nodes)) {
+    if nodes.len > 0 && nodes.len + more > BATCH {
+        visit(nodes);
+        nodes.len = 0;
     }
 }
 
 /// `tan(t / 2)` from `tan(t)`; 1 at infinity.
-fn half_tangent(tan: f64) -> f64 {
+pub(super) fn half_tangent(tan: f64) -> f64 {
     if tan.is_finite() { tan / (1.0 + (1.0 + tan * tan).sqrt()) } else { 1.0 }
 }
 
-/// Nodes of one row and panel. `y` runs over the tangent of the half angle measured from the graded end.
-fn fill(nodes: &mut Nodes, row: &Row, graded: &Graded, width: f64, span: [f64; 2], from_horizon: bool) {
+/// Appends the nodes of one row below `t_max / 2`; `y = tan(t / 2)` runs over (0, end).
+///
+/// `mu_i` is far from 0 relative to its terms here (at least `mu / 2`), so it is formed directly.
+fn fill_peak(nodes: &mut Nodes, row: &Row, graded: &Graded, width: f64, end: f64) {
+    let (a, mu) = (row.along, nodes.mu_o);
+    let len = graded.len;
+    let at = nodes.len..nodes.len + len;
+    nodes.len += len;
+    nodes.cos_phi[at.clone()].fill(row.cos_phi);
+    nodes.sin_phi[at.clone()].fill(row.sin_phi);
+    let scale = 8.0 * end * width;
+    let (node, weight) = (&graded.node[..len], &graded.weight[..len]);
+    let (cos_h, sin_h) = (&mut nodes.cos_h[at.clone()], &mut nodes.sin_h[at.clone()]);
+    let (mu_i, cos_d) = (&mut nodes.mu_i[at.clone()], &mut nodes.cos_d[at.clone()]);
+    let out = &mut nodes.weight[at];
+    for i in 0..len {
+        let t = end * node[i];
+        let sec = 1.0 / (1.0 + t * t);
+        let cos = (1.0 - t) * (1.0 + t) * sec;
+        let sin = 2.0 * t * sec;
+        let v = a * sin + mu * cos;
+        cos_h[i] = cos;
+        sin_h[i] = sin;
+        mu_i[i] = 2.0 * v * cos - mu;
+        cos_d[i] = v;
+        // 4 v sin dt, dt = 2 sec d(tan(t / 2))
+        out[i] = scale * (v * sin) * (sec * weight[i]);
+    }
+}
+
+/// Appends the nodes of one row above `t_max / 2`; `u = tan((t_max - t) / 2)` runs over `span`.
+fn fill_horizon(nodes: &mut Nodes, row: &Row, graded: &Graded, width: f64, span: [f64; 2]) {
     let (half, mu) = (row.half, nodes.mu_o);
     let length = span[1] - span[0];
-    let len = graded.len.min(BATCH);
-    nodes.len = len;
-    nodes.cos_phi[..len].fill(row.cos_phi);
+    let len = graded.len;
+    let at = nodes.len..nodes.len + len;
+    nodes.len += len;
+    nodes.cos_phi[at.clone()].fill(row.cos_phi);
+    nodes.sin_phi[at.clone()].fill(row.sin_phi);
+    let scale = 8.0 * length * width;
+    let (node, weight) = (&graded.node[..len], &graded.weight[..len]);
+    let (cos_h, sin_h) = (&mut nodes.cos_h[at.clone()], &mut nodes.sin_h[at.clone()]);
+    let (mu_i, cos_d) = (&mut nodes.mu_i[at.clone()], &mut nodes.cos_d[at.clone()]);
+    let out = &mut nodes.weight[at];
     for i in 0..len {
-        let y = span[0] + length * graded.node[i];
-        let other = (half - y) / (1.0 + half * y);
-        // t = tan(theta / 2), u = tan((theta_max - theta) / 2)
-        let (t, u) = if from_horizon { (other, y) } else { (y, other) };
-        let d_theta = 2.0 * length * graded.weight[i] / (1.0 + y * y);
-        let sec_t = 1.0 / (1.0 + t * t);
+        let u = span[0] + length * node[i];
+        let t = (half - u) / (1.0 + half * u);
         let sec_u = 1.0 / (1.0 + u * u);
-        let cos = (1.0 - t) * (1.0 + t) * sec_t;
-        let sin = 2.0 * t * sec_t;
-        let mu_i = row.r * 4.0 * u * (1.0 - u) * (1.0 + u) * sec_u * sec_u;
+        // one division serves 1 / (1 + t^2) and 1 / cos = (1 + t^2) / (1 - t^2)
+        let (less, more) = ((1.0 - t) * (1.0 + t), 1.0 + t * t);
+        let inverse = 1.0 / (less * more);
+        let sec = less * inverse;
+        let sin = 2.0 * t * sec;
+        let m = row.r * 4.0 * u * (1.0 - u) * (1.0 + u) * (sec_u * sec_u);
         // from mu_i = 2 v cos - mu, free of cancellation where v is small
-        let v = (mu_i + mu) / (2.0 * cos);
-        nodes.cos_h[i] = cos;
-        nodes.sin_h[i] = sin;
-        nodes.mu_i[i] = mu_i;
-        nodes.cos_d[i] = v;
-        nodes.weight[i] = 4.0 * v * sin * d_theta * width;
+        let v = 0.5 * (m + mu) * (more * more) * inverse;
+        cos_h[i] = less * sec;
+        sin_h[i] = sin;
+        mu_i[i] = m;
+        cos_d[i] = v;
+        out[i] = scale * (v * sin) * (sec_u * weight[i]);
+    }
+}
+
+/// Nodes of one row and panel of a chart with rows of its own: the batch is replaced.
+pub(super) fn fill(
+    nodes: &mut Nodes,
+    row: &Row,
+    graded: &Graded,
+    width: f64,
+    span: [f64; 2],
+    from_horizon: bool,
+) {
+    nodes.len = 0;
+    if from_horizon {
+        fill_horizon(nodes, row, graded, width, span);
+    } else {
+        fill_peak(nodes, row, graded, width, span[1]);
     }
 }

@@ -8,6 +8,7 @@
 
 use super::chart::Chart;
 use super::nodes::{MAX_PANELS, Nodes};
+use super::view::View;
 
 /// Most channels integrated in one pass.
 pub const MAX_CHANNELS: usize = 8;
@@ -67,7 +68,7 @@ pub fn first_level(tolerance: f64) -> usize {
 /// The result may miss the tolerance: its error then says so, and the caller decides.
 pub fn integrate(
     chart: &Chart,
-    mu_o: f64,
+    view: View,
     channels: usize,
     tolerance: f64,
     add: &mut dyn FnMut(&Nodes, &mut Sums),
@@ -75,7 +76,7 @@ pub fn integrate(
     let mut evaluations = 0u32;
     let mut sums_at = |level: f64| {
         let mut sums = [[0.0; MAX_CHANNELS]; MAX_PANELS];
-        chart.visit(mu_o, level, &mut |nodes| {
+        chart.visit(view, level, &mut |nodes| {
             evaluations = evaluations.saturating_add(u32::try_from(nodes.len).unwrap_or(u32::MAX));
             add(nodes, &mut sums[nodes.panel]);
         });

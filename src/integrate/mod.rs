@@ -1,20 +1,28 @@
 //! Quadrature rules and charts. This room knows directions and measures, but no BRDF.
 //!
 //! A [`Chart`] spreads nodes over the hemisphere of incident directions so that the peak, the horizon and the plane
-//! of incidence are coordinate lines; [`ladder`] raises its level until two levels agree to a tolerance.
+//! of incidence are coordinate lines; [`ladder`] raises its level until two levels agree to a tolerance. Where a model
+//! has no chart, [`adaptive`] subdivides the hemisphere instead.
 
+pub mod adaptive;
 pub mod broad;
 pub mod chart;
+pub mod ellipse;
 pub mod facet;
+pub mod fibre;
 pub mod gauss;
 pub mod graded;
 pub mod half_vector;
 pub mod hammersley;
 pub mod hemisphere;
 pub mod ladder;
+pub mod lobe;
 pub mod nodes;
 pub mod sobol;
+pub mod view;
 
 pub use chart::Chart;
+pub use ellipse::Edge;
 pub use ladder::{Estimate, MAX_CHANNELS, Sums};
 pub use nodes::{BATCH, MAX_PANELS, Nodes};
+pub use view::View;

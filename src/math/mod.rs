@@ -2,6 +2,7 @@
 
 pub mod complex;
 pub mod double;
+pub mod exp;
 pub mod frame;
 pub mod nearest;
 pub mod root;

@@ -1,4 +1,4 @@
-//! Ggx reflection with a Schlick Fresnel factor; with f0 = f90 = 1 the white model that split-sum tables integrate.
+//! GGX reflection with a Schlick Fresnel factor; with f0 = f90 = 1 the white model that split-sum tables integrate.
 //!
 //! Recipe: `model = "ggx"`, `params = { f0 = 0.04, masking = "correlated" }`; alpha usually sweeps an axis.
 //! Typical widths: 0.001 looks like a mirror, 0.1 like satin, 0.7 like chalky metal.
@@ -10,7 +10,7 @@ use crate::cite;
 /// Registry entry.
 pub static INFO: ModelInfo = ModelInfo {
     id: "ggx",
-    title: "Ggx, Schlick Fresnel",
+    title: "GGX, Schlick Fresnel",
     formula: "f = F(wo.wh) D(wh) G2(wo, wi) / (4 mu_o mu_i), F = F0 + (F90 - F0)(1 - wo.wh)^5",
     sources: &[
         (cite::WALTER_2007, "Eq. 33 (D), 34 (G1), 20 (f)"),

@@ -1,4 +1,4 @@
-//! Ggx reflection off a rough metal, with the exact unpolarised Fresnel factor of a complex index eta + i k.
+//! GGX reflection off a rough metal, with the exact unpolarised Fresnel factor of a complex index eta + i k.
 //!
 //! Recipe: `model = "ggx-conductor"`, `params = { eta = 0.2, k = 3.9 }` (one wavelength; a colour is three bakes).
 
@@ -9,7 +9,7 @@ use crate::cite;
 /// Registry entry.
 pub static INFO: ModelInfo = ModelInfo {
     id: "ggx-conductor",
-    title: "Ggx reflection off a metal, exact Fresnel",
+    title: "GGX reflection off a metal, exact Fresnel",
     formula: "f = F(wo.wh, eta + i k) D(wh) G2(wo, wi) / (4 mu_o mu_i)",
     sources: &[
         (cite::WALTER_2007, "Eq. 33 (D), 34 (G1), 20 (f)"),

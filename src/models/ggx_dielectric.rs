@@ -1,4 +1,4 @@
-//! Ggx reflection off a rough dielectric: the reflected part only, with the exact unpolarised Fresnel factor.
+//! GGX reflection off a rough dielectric: the reflected part only, with the exact unpolarised Fresnel factor.
 //!
 //! Recipe: `model = "ggx-dielectric"`, `params = { eta = 1.5 }`. eta < 1 is the view from inside, with total
 //! internal reflection. Typical eta: water 1.333, plastic and glass 1.5, diamond 2.42.
@@ -10,7 +10,7 @@ use crate::cite;
 /// Registry entry.
 pub static INFO: ModelInfo = ModelInfo {
     id: "ggx-dielectric",
-    title: "Ggx reflection off a dielectric, exact Fresnel",
+    title: "GGX reflection off a dielectric, exact Fresnel",
     formula: "f = F(wo.wh, eta) D(wh) G2(wo, wi) / (4 mu_o mu_i)",
     sources: &[
         (cite::WALTER_2007, "Eq. 33 (D), 34 (G1), 20 (f), 22 (F)"),

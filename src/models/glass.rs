@@ -11,7 +11,7 @@ use super::microfacet::{Distribution, Masking};
 use super::{Brdf, Btdf, Param, Params, Sample};
 use crate::integrate::facet::{self, Facet};
 use crate::integrate::ladder::ROUNDING;
-use crate::integrate::{Chart, Estimate, MAX_CHANNELS};
+use crate::integrate::{Chart, Edge, Estimate, MAX_CHANNELS};
 use crate::math::frame;
 use crate::terms::fresnel;
 use crate::terms::refraction::{self, Across};
@@ -238,7 +238,14 @@ impl<D: Distribution> Brdf for Glass<D> {
     fn chart(&self) -> Option<Chart> {
         let reach = self.distribution.reach();
         let kinks = self.eta < 1.0;
-        self.distribution.alpha().map(|alpha| Chart::HalfVector { alpha, reach, kinks })
+        Some(match self.distribution.alpha() {
+            Some(alpha) => Chart::HalfVector { alpha, reach, kinks },
+            None => Chart::Ellipse { alpha: self.distribution.widths(), reach, edge: Edge::Layer },
+        })
+    }
+
+    fn turns(&self) -> bool {
+        self.distribution.alpha().is_none()
     }
 
     fn mirror(&self, mu_o: f64) -> Option<f64> {

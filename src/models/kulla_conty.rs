@@ -35,7 +35,7 @@ pub static INFO: ModelInfo = ModelInfo {
             params: &[("alpha", "1"), ("f0", "0.5"), ("f90", "0.5"), ("masking", "\"separable\"")],
             // E = 1 - ln 2, E_avg = 4 (1 - ln 2)^2 = e; F_ms = e / (4 (1 - (1 - e) / 2)) = e / (2 (1 + e))
             value: 0.153_426_409_720_027_36
-                + 0.376_634_611_193_243_26 / 2.753_269_222_386_486_5 * 0.693_147_180_559_945_3,
+                + 0.376_634_611_193_243_26 / 2.753_269_222_386_486_5 * std::f64::consts::LN_2,
             relative: 1e-6,
             source: "closed form: separable Smith at alpha = 1",
         },
@@ -48,9 +48,9 @@ fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     compensated::build(INFO.id, params, rule)
 }
 
-fn rule(params: &Params, parts: &Parts<'_>) -> Option<Rule> {
+fn rule(params: &Params, parts: &Parts<'_>) -> Rule {
     let (f_avg, e_avg) = (compensated::f_avg(params), parts.e_avg());
     let slides = params.choice("colour") == "slides";
     let colour = if slides { ms::colour_slides(f_avg, e_avg) } else { ms::colour_series(f_avg, e_avg) };
-    Some(Rule::KullaConty { colour })
+    Rule::KullaConty { colour }
 }

@@ -2,12 +2,12 @@
 //!
 //! Recipe: `model = "lambert"`, `params = { rho = 0.8 }`.
 
-use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity, Sample};
+use super::lobes::{Diffuse, Reflector};
+use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
 use crate::cite;
 use crate::integrate::Chart;
-use crate::math::frame;
-use glam::{DVec2, DVec3};
-use std::f64::consts::{FRAC_1_PI, TAU};
+use glam::DVec3;
+use std::f64::consts::FRAC_1_PI;
 
 /// Registry entry.
 pub static INFO: ModelInfo = ModelInfo {
@@ -28,6 +28,13 @@ pub static INFO: ModelInfo = ModelInfo {
             source: "closed form: E = rho",
         },
         Known {
+            what: Quantity::Albedo(0.0),
+            params: &[("rho", "0.5")],
+            value: 0.5,
+            relative: 1e-14,
+            source: "closed form: E = rho, also for grazing views",
+        },
+        Known {
             what: Quantity::Value([0.5, 0.0, 0.5, 3.140_625]),
             params: &[("rho", "0.5")],
             value: 0.159_154_943_091_895_34,
@@ -39,29 +46,24 @@ pub static INFO: ModelInfo = ModelInfo {
     build,
 };
 
-#[derive(Debug)]
-struct Lambert {
-    rho: f64,
-}
-
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    Ok(Box::new(Lambert { rho: params.number("rho") }))
+    Ok(Box::new(Diffuse(Lambert { rho: params.number("rho") })))
 }
 
-impl Brdf for Lambert {
-    fn eval(&self, wo: DVec3, wi: DVec3) -> f64 {
-        if frame::both_above(wo, wi) { self.rho * FRAC_1_PI } else { 0.0 }
+/// The lobe; also the diffuse part of other models.
+#[derive(Debug)]
+pub(super) struct Lambert {
+    /// Reflectance.
+    pub(super) rho: f64,
+}
+
+impl Reflector for Lambert {
+    fn f(&self, _wo: DVec3, _wi: DVec3) -> f64 {
+        self.rho * FRAC_1_PI
     }
 
-    fn sample(&self, _wo: DVec3, u: DVec2) -> Option<Sample> {
-        let r = u.x.sqrt();
-        let z = (1.0 - u.x).max(0.0).sqrt();
-        let wi = DVec3::new(r * libm::cos(TAU * u.y), r * libm::sin(TAU * u.y), z);
-        (z > 0.0).then_some(Sample { wi, pdf: z * FRAC_1_PI })
-    }
-
-    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
-        if frame::both_above(wo, wi) { wi.z * FRAC_1_PI } else { 0.0 }
+    fn albedo(&self, _mu_o: f64) -> Option<f64> {
+        Some(self.rho)
     }
 
     fn chart(&self) -> Option<Chart> {

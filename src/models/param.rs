@@ -33,6 +33,24 @@ pub enum Kind {
     },
     /// One of a few words; the first is the default.
     Choice(&'static [&'static str]),
+    /// Any number of rows of numbers, as a list of lists.
+    Rows {
+        /// What the numbers of a row are.
+        columns: &'static [Column],
+        /// Rows if none are given.
+        preset: &'static [&'static [f64]],
+    },
+}
+
+/// A column of [`Kind::Rows`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Column {
+    /// Name.
+    pub id: &'static str,
+    /// Least value.
+    pub min: f64,
+    /// Largest value.
+    pub max: f64,
 }
 
 /// The default of a number.
@@ -45,12 +63,14 @@ pub enum Preset {
 }
 
 /// A resolved value.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Value {
     /// A number.
     Number(f64),
     /// A word.
     Choice(&'static str),
+    /// Rows of numbers.
+    Rows(Vec<Vec<f64>>),
 }
 
 /// What can be wrong with the parameters of a model.
@@ -150,9 +170,10 @@ impl Params {
             let value = given.unwrap_or_else(|| match param.kind {
                 Kind::Number { preset: Preset::Value(v), .. } => Value::Number(v),
                 Kind::Number { preset: Preset::Of(id), .. } => {
-                    values.iter().find(|(k, _)| *k == id).map_or(Value::Number(f64::NAN), |(_, v)| *v)
+                    values.iter().find(|(k, _)| *k == id).map_or(Value::Number(f64::NAN), |(_, v)| v.clone())
                 }
                 Kind::Choice(words) => Value::Choice(words.first().copied().unwrap_or_default()),
+                Kind::Rows { preset, .. } => Value::Rows(preset.iter().map(|row| row.to_vec()).collect()),
             });
             values.push((param.id, value));
         }
@@ -183,6 +204,15 @@ impl Params {
         }
     }
 
+    /// Rows of numbers, each as long as its columns; none if the model has no such parameter.
+    #[must_use]
+    pub fn rows(&self, id: &str) -> &[Vec<f64>] {
+        match self.values.iter().find(|(k, _)| *k == id) {
+            Some((_, Value::Rows(rows))) => rows,
+            _ => &[],
+        }
+    }
+
     /// Replaces a number by the value of an axis. Returns false if there is no such number.
     pub fn set(&mut self, id: &str, value: f64) -> bool {
         match self.values.iter_mut().find(|(k, _)| *k == id) {
@@ -206,6 +236,7 @@ impl Params {
         let json = |v: &Value| match v {
             Value::Number(n) => Json::from(*n),
             Value::Choice(c) => Json::from(*c),
+            Value::Rows(rows) => rows.iter().map(|r| Json::from(r.as_slice())).collect(),
         };
         self.values
             .iter()
@@ -240,7 +271,38 @@ fn parse(model: &'static str, param: &Param, value: &Json) -> Result<Value, Para
             .find(|w| value.as_str() == Some(w))
             .map(|w| Value::Choice(w))
             .ok_or_else(|| wrong(format!("one of {}", words.join(", ")))),
+        Kind::Rows { columns, .. } => {
+            parse_rows(columns, value).map(Value::Rows).map_err(|(got, allowed)| {
+                let got = got.unwrap_or_else(|| value.to_string());
+                ParamError::Kind { model, key: param.id, got, allowed }
+            })
+        }
     }
+}
+
+/// Rows of numbers from JSON; else what was given, if it can be named, and what is allowed.
+fn parse_rows(columns: &[Column], value: &Json) -> Result<Vec<Vec<f64>>, (Option<String>, String)> {
+    let list = || (None, format!("a list of rows [{}]", names(columns)));
+    let rows = value.as_array().ok_or_else(list)?;
+    let mut out = Vec::with_capacity(rows.len());
+    for (i, row) in rows.iter().enumerate() {
+        let row = row.as_array().filter(|r| r.len() == columns.len()).ok_or_else(list)?;
+        let mut numbers = Vec::with_capacity(columns.len());
+        for (cell, column) in row.iter().zip(columns) {
+            let got = cell.as_f64().ok_or_else(list)?;
+            if !(got >= column.min && got <= column.max) {
+                let what = format!("{} = {got} in row {}", column.id, i + 1);
+                return Err((Some(what), format!("in [{}, {}]", column.min, column.max)));
+            }
+            numbers.push(got);
+        }
+        out.push(numbers);
+    }
+    Ok(out)
+}
+
+fn names(columns: &[Column]) -> String {
+    columns.iter().map(|c| c.id).collect::<Vec<_>>().join(", ")
 }
 
 impl Param {
@@ -267,6 +329,17 @@ impl Param {
     #[must_use]
     pub const fn choice(id: &'static str, doc: &'static str, words: &'static [&'static str]) -> Param {
         Param { id, symbol: "", unit: "", doc, also: &[], kind: Kind::Choice(words) }
+    }
+
+    /// Any number of rows of numbers.
+    #[must_use]
+    pub const fn rows(
+        id: &'static str,
+        doc: &'static str,
+        columns: &'static [Column],
+        preset: &'static [&'static [f64]],
+    ) -> Param {
+        Param { id, symbol: "", unit: "1", doc, also: &[], kind: Kind::Rows { columns, preset } }
     }
 
     /// The same parameter with other accepted spellings.

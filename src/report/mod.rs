@@ -5,6 +5,7 @@
 
 pub mod diff;
 pub mod inspect;
+pub mod plot;
 pub mod text;
 
 pub use diff::diff;

@@ -42,11 +42,10 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
 impl Baker for Albedo {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
         let model = self.sweep.model(at)?;
-        integrate(&*model, self.sweep.info().id, self.sweep.mu(at), &[Functional::One], tolerance)
+        integrate(&*model, self.sweep.view(at), &[Functional::One], tolerance)
     }
 
     fn rule(&self) -> String {
-        "one-dimensional reduction where the model has one, else product Gauss-Legendre in its chart"
-            .to_owned()
+        format!("one-dimensional reduction where the model has one; else {}", self.sweep.rule())
     }
 }

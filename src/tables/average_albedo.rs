@@ -6,8 +6,9 @@ use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, Te
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::graded::{Graded, Order};
-use crate::integrate::{Estimate, MAX_CHANNELS};
+use crate::integrate::{Estimate, MAX_CHANNELS, View};
 use crate::models::Brdf;
+use std::f64::consts::FRAC_PI_2;
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
@@ -48,36 +49,37 @@ impl Baker for AverageAlbedo {
         // E changes on the scale mu ~ alpha; a model without alpha is smooth.
         let alpha = params.number("alpha");
         let scale = if alpha.is_finite() { alpha.clamp(1e-4, 1.0) } else { 1.0 };
-        average(&*model, self.sweep.info().id, scale, tolerance)
+        average(&*model, scale, tolerance)
     }
 
     fn rule(&self) -> String {
-        "Gauss-Legendre in mu graded at alpha, over directional albedos integrated to a quarter of the tolerance"
-            .to_owned()
+        format!(
+            "Gauss-Legendre in mu graded at alpha, over albedos to a quarter of the tolerance ({})",
+            self.sweep.rule()
+        )
     }
 }
 
-/// `2 int E mu dmu` with the order raised until two orders agree; inner errors are added by their weights.
+/// `2 int E mu dmu`, averaged over the azimuth for a model that depends on it, with the order raised until two orders agree; inner errors are added by their weights.
 ///
 /// # Errors
 /// As [`integrate`].
-pub fn average(
-    model: &dyn Brdf,
-    id: &'static str,
-    scale: f64,
-    tolerance: f64,
-) -> Result<Estimate, TexelError> {
+pub fn average(model: &dyn Brdf, scale: f64, tolerance: f64) -> Result<Estimate, TexelError> {
     let mut previous: Option<f64> = None;
     let mut evaluations = 0u32;
     let mut result = Estimate::exact([0.0; MAX_CHANNELS]);
     for level in [6.0, 9.0, 13.0, 19.0, 27.0, 38.0] {
         let rule = Graded::new(scale, Order(1.0, 0.25), level);
         let (mut value, mut inner) = (0.0, 0.0);
+        let azimuths = azimuths(model, level);
         for (&mu, &w) in rule.node[..rule.len].iter().zip(&rule.weight) {
-            let e = integrate(model, id, mu, &[Functional::One], 0.25 * tolerance)?;
-            evaluations = evaluations.saturating_add(e.evaluations);
-            value += 2.0 * mu * w * e.value[0];
-            inner += 2.0 * mu * w * e.error[0];
+            for &phi in &azimuths {
+                let e = integrate(model, View { mu, phi }, &[Functional::One], 0.25 * tolerance)?;
+                let weight = 2.0 * mu * w / azimuths.len() as f64;
+                evaluations = evaluations.saturating_add(e.evaluations);
+                value += weight * e.value[0];
+                inner += weight * e.error[0];
+            }
         }
         let outer = previous.map_or(f64::INFINITY, |p| (value - p).abs());
         result.value[0] = value;
@@ -89,4 +91,15 @@ pub fn average(
         previous = Some(value);
     }
     Ok(result)
+}
+
+/// View azimuths to average over: midpoints of equal parts of a quarter, since both tangents are lines of symmetry.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "levels are small and positive")]
+fn azimuths(model: &dyn Brdf, level: f64) -> Vec<f64> {
+    if !model.turns() {
+        return vec![0.0];
+    }
+    let count = (0.5 * level).round() as usize;
+    let step = FRAC_PI_2 / count as f64;
+    (0..count).map(|i| (i as f64 + 0.5) * step).collect()
 }

@@ -81,10 +81,10 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
 impl Baker for Dfg {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
         let model = self.sweep.model(at)?;
-        integrate(&*model, self.sweep.info().id, self.sweep.mu(at), &self.functionals, tolerance)
+        integrate(&*model, self.sweep.view(at), &self.functionals, tolerance)
     }
 
     fn rule(&self) -> String {
-        "product Gauss-Legendre in the model's chart, level raised until two levels agree".to_owned()
+        self.sweep.rule()
     }
 }

@@ -1,6 +1,6 @@
 //! The one loop over texels: threads, progress and cancelling live here and nowhere else.
 //!
-//! Rows are computed in parallel and collected in order; each texel depends only on its coordinates, so the bytes do
+//! Runs of texels are computed in parallel and collected in order; each texel depends only on its coordinates, so the bytes do
 //! not depend on the number of threads.
 
 use super::{Bound, TexelError};
@@ -73,6 +73,10 @@ pub enum BakeError {
     Cancelled,
 }
 
+/// Most texels in one task.
+const CHUNK: usize = 128;
+
+/// The results of one task: a run of texels.
 struct Row {
     values: Vec<f64>,
     errors: Vec<f64>,
@@ -85,14 +89,18 @@ struct Row {
 /// [`BakeError`]; the first texel in order is named, whatever the number of threads.
 pub fn bake(bound: &Bound, options: Options<'_>) -> Result<Table, BakeError> {
     let grid = &bound.spec.grid;
-    let width = grid.extent()[0];
-    let rows = grid.len() / width;
+    let len = grid.len();
+    // small enough that a one-row table keeps every thread busy, large enough that a task is worth its keeping
+    let width = (len / 32).clamp(1, CHUNK);
+    let rows = len.div_ceil(width);
     let done = AtomicUsize::new(0);
     let results: Vec<Result<Row, BakeError>> = (0..rows)
         .into_par_iter()
         .map(|y| {
-            let row = bake_row(bound, y * width..(y + 1) * width, options)?;
-            (options.progress)(done.fetch_add(width, Ordering::Relaxed) + width);
+            let texels = y * width..len.min((y + 1) * width);
+            let count = texels.len();
+            let row = bake_row(bound, texels, options)?;
+            (options.progress)(done.fetch_add(count, Ordering::Relaxed) + count);
             Ok(row)
         })
         .collect();

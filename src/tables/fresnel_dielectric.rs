@@ -79,8 +79,7 @@ struct Table {
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
-    let at = |id| spec.grid.axes().iter().position(|a| a.quantity.base_id() == id).unwrap_or(0);
-    Ok(Box::new(Table { mu: at("mu"), eta: at("eta"), layout: spec.layout.id }))
+    Ok(Box::new(Table { mu: spec.coordinate("mu")?, eta: spec.coordinate("eta")?, layout: spec.layout.id }))
 }
 
 impl Baker for Table {

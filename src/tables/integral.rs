@@ -3,7 +3,7 @@
 //! `I_j = int f(wo, wi) g_j(wo . wh) mu_i dwi`, all channels over the same nodes in one pass.
 
 use super::TexelError;
-use crate::integrate::{BATCH, Estimate, MAX_CHANNELS, Nodes, Sums, ladder};
+use crate::integrate::{BATCH, Estimate, MAX_CHANNELS, Nodes, Sums, View, adaptive, ladder};
 use crate::models::Brdf;
 
 /// The weight g_j of a channel, a function of `v = wo . wh`.
@@ -30,63 +30,123 @@ impl Functional {
         }
     }
 
-    /// Dot product of `values` with the weights, in fixed order.
-    fn sum(self, values: &[f64], cos_d: &[f64]) -> f64 {
+    /// The channel from the two sums that every functional is made of.
+    fn of(self, sums: Batch) -> f64 {
         match self {
-            Functional::One => values.iter().sum(),
-            Functional::Schlick => schlick_sum(values, cos_d),
-            Functional::SchlickComplement => values.iter().sum::<f64>() - schlick_sum(values, cos_d),
+            Functional::One => sums.one,
+            Functional::Schlick => sums.schlick,
+            Functional::SchlickComplement => sums.one - sums.schlick,
         }
     }
 }
 
-fn schlick_sum(values: &[f64], cos_d: &[f64]) -> f64 {
-    let mut sum = 0.0;
-    for (f, v) in values.iter().zip(cos_d) {
-        let m = 1.0 - v;
-        let m2 = m * m;
-        sum += f * (m2 * m2 * m);
-    }
-    sum
+/// Sums of a batch: of the contributions, and of the contributions times (1 - v)^5.
+#[derive(Debug, Clone, Copy)]
+struct Batch {
+    one: f64,
+    schlick: f64,
 }
 
-/// Integrates the functionals of a model at a view cosine to an absolute tolerance.
+/// Independent partial sums, so that additions need not wait for each other. The order is fixed.
+const LANES: usize = 4;
+
+impl Batch {
+    /// `values` are f; the contributions are f times weight times `mu_i`.
+    fn new(values: &[f64; BATCH], nodes: &Nodes) -> Batch {
+        let n = nodes.len;
+        let (mut one, mut schlick) = ([0.0; LANES], [0.0; LANES]);
+        let whole = n - n % LANES;
+        let mut add = |lane: usize, i: usize| {
+            let f = values[i] * (nodes.weight[i] * nodes.mu_i[i]);
+            let m = 1.0 - nodes.cos_d[i];
+            let m2 = m * m;
+            one[lane] += f;
+            schlick[lane] += f * (m2 * m2 * m);
+        };
+        for i in (0..whole).step_by(LANES) {
+            for lane in 0..LANES {
+                add(lane, i + lane);
+            }
+        }
+        for i in whole..n {
+            add(i - whole, i);
+        }
+        Batch {
+            one: (one[0] + one[1]) + (one[2] + one[3]),
+            schlick: (schlick[0] + schlick[1]) + (schlick[2] + schlick[3]),
+        }
+    }
+}
+
+/// Integrates the functionals of a model at a view to an absolute tolerance.
+///
+/// A number is a view cosine in the plane of the tangent. A sum of lobes is integrated lobe by lobe, a lobe in its
+/// chart, and one without a chart by adaptive subdivision.
 ///
 /// # Errors
-/// [`TexelError::NoChart`] if the model declares none, [`TexelError::NotFinite`] with the channel otherwise.
+/// [`TexelError::NotFinite`] with the channel.
 pub fn integrate(
     model: &dyn Brdf,
-    id: &'static str,
-    mu_o: f64,
+    view: impl Into<View>,
     functionals: &[Functional],
     tolerance: f64,
 ) -> Result<Estimate, TexelError> {
     debug_assert!(functionals.len() <= MAX_CHANNELS);
-    if let Some(e) = model.mirror(mu_o) {
+    let view = view.into();
+    if let Some(parts) = model.parts() {
+        return sum(&parts, view, functionals, tolerance);
+    }
+    if let Some(e) = model.mirror(view.mu) {
         let mut value = [0.0; MAX_CHANNELS];
         for (v, g) in value.iter_mut().zip(functionals) {
-            *v = e * g.at(mu_o);
+            *v = e * g.at(view.mu);
         }
         return Ok(Estimate::exact(value));
     }
     if functionals == [Functional::One]
-        && let Some(e) = model.reduced_albedo(mu_o, tolerance)
+        && let Some(e) = model.reduced_albedo(view.mu, tolerance)
     {
         return finite(e, 1);
     }
-    let chart = model.chart().ok_or(TexelError::NoChart { model: id })?;
     let mut values = [0.0; BATCH];
     let mut add = |nodes: &Nodes, sums: &mut Sums| {
-        let n = nodes.len;
         model.eval_nodes(nodes, &mut values);
-        for i in 0..n {
-            values[i] *= nodes.weight[i] * nodes.mu_i[i];
-        }
+        let batch = Batch::new(&values, nodes);
         for (s, g) in sums.iter_mut().zip(functionals) {
-            *s += g.sum(&values[..n], &nodes.cos_d[..n]);
+            *s += g.of(batch);
         }
     };
-    finite(ladder::integrate(&chart, mu_o, functionals.len(), tolerance, &mut add), functionals.len())
+    let channels = functionals.len();
+    let estimate = match model.chart() {
+        Some(chart) => ladder::integrate(&chart, view, channels, tolerance, &mut add),
+        None => adaptive::integrate(view, channels, tolerance, &mut add),
+    };
+    finite(estimate, channels)
+}
+
+/// The sum of the parts, each to its share of the tolerance; values and errors add.
+fn sum(
+    parts: &[(f64, &dyn Brdf)],
+    view: View,
+    functionals: &[Functional],
+    tolerance: f64,
+) -> Result<Estimate, TexelError> {
+    let mut total = Estimate { value: [0.0; MAX_CHANNELS], error: [0.0; MAX_CHANNELS], evaluations: 0 };
+    let share = tolerance / parts.len().max(1) as f64;
+    for &(weight, part) in parts {
+        if weight <= 0.0 {
+            continue;
+        }
+        let e = integrate(part, view, functionals, share / weight)?;
+        for (t, v) in total.value.iter_mut().zip(&e.value) {
+            *t += weight * v;
+        }
+        for (t, v) in total.error.iter_mut().zip(&e.error) {
+            *t += weight * v;
+        }
+        total.evaluations = total.evaluations.saturating_add(e.evaluations);
+    }
+    finite(total, functionals.len())
 }
 
 fn finite(estimate: Estimate, channels: usize) -> Result<Estimate, TexelError> {

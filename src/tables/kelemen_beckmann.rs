@@ -47,8 +47,7 @@ struct Texture {
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
-    let at = |id| spec.grid.axes().iter().position(|a| a.quantity.base_id() == id).unwrap_or(0);
-    Ok(Box::new(Texture { mu: at("mu_m"), m: at("m") }))
+    Ok(Box::new(Texture { mu: spec.coordinate("mu_m")?, m: spec.coordinate("m")? }))
 }
 
 impl Baker for Texture {

@@ -56,12 +56,6 @@ pub enum TexelError {
     /// The model refuses its parameters here.
     #[error(transparent)]
     Param(#[from] crate::models::ParamError),
-    /// The model has no chart for these parameters.
-    #[error("{model} declares no chart for these parameters, so its integrals have no error estimate")]
-    NoChart {
-        /// Model id.
-        model: &'static str,
-    },
 }
 
 /// A named set of channels of a table kind.

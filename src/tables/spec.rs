@@ -193,11 +193,34 @@ impl Spec {
         ids
     }
 
+    /// Number of the axis that sweeps a quantity, itself or through a derived one.
+    #[must_use]
+    pub fn axis(&self, base_id: &str) -> Option<usize> {
+        self.grid.axes().iter().position(|a| a.quantity.base_id() == base_id)
+    }
+
+    /// Number of the axis of a coordinate that the kind must have.
+    ///
+    /// # Errors
+    /// [`BindError::MissingAxis`].
+    pub fn coordinate(&self, base_id: &'static str) -> Result<usize, BindError> {
+        let got = || axis_ids(&self.grid);
+        self.axis(base_id).ok_or_else(|| BindError::MissingAxis {
+            kind: self.kind.id,
+            needed: base_id,
+            got: got(),
+        })
+    }
+
     /// Channels of the layout.
     #[must_use]
     pub fn channels(&self) -> Vec<Channel> {
         self.layout.channels.iter().map(super::ChannelInfo::channel).collect()
     }
+}
+
+fn axis_ids(grid: &Grid) -> String {
+    grid.axes().iter().map(|a| a.quantity.id).collect::<Vec<_>>().join(", ")
 }
 
 fn borrowed(map: &Map<String, Json>) -> impl Iterator<Item = (&str, &Json)> {
@@ -226,7 +249,7 @@ fn check_axes(
     let bases: Vec<&'static str> = grid.axes().iter().map(|a| a.quantity.base_id()).collect();
     for needed in kind.coordinates {
         if !bases.contains(needed) {
-            let got = grid.axes().iter().map(|a| a.quantity.id).collect::<Vec<_>>().join(", ");
+            let got = axis_ids(grid);
             return Err(BindError::MissingAxis { kind: kind.id, needed, got });
         }
     }
@@ -237,9 +260,18 @@ fn check_axes(
         .filter(|p| matches!(p.kind, models::Kind::Number { .. }))
         .map(|p| p.id)
         .collect();
+    // a view has an azimuth where it has a cosine
+    let azimuth: &[&str] = if model.is_some() && kind.coordinates.contains(&"mu") { &["phi"] } else { &[] };
     for (axis, base) in grid.axes().iter().zip(&bases) {
-        if !kind.coordinates.contains(base) && !numbers.contains(base) {
-            let allowed = kind.coordinates.iter().chain(&numbers).copied().collect::<Vec<_>>().join(", ");
+        if !kind.coordinates.contains(base) && !numbers.contains(base) && !azimuth.contains(base) {
+            let allowed = kind
+                .coordinates
+                .iter()
+                .chain(&numbers)
+                .chain(azimuth)
+                .copied()
+                .collect::<Vec<_>>()
+                .join(", ");
             return Err(BindError::IdleAxis { kind: kind.id, axis: axis.quantity.id, allowed });
         }
         if given.contains_key(*base) {

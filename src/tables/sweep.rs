@@ -1,6 +1,7 @@
 //! From a point of the grid to a model: which axis is the view cosine, which ones are parameters.
 
 use super::{BindError, Spec, TexelError};
+use crate::integrate::View;
 use crate::models::{Brdf, ModelInfo, Params};
 
 /// A model whose parameters follow the axes of a grid.
@@ -10,6 +11,8 @@ pub struct Sweep {
     params: Params,
     /// Axis number of the view cosine, if one sweeps it.
     mu: Option<usize>,
+    /// Axis number of the view azimuth, if one sweeps it.
+    phi: Option<usize>,
     /// Axis number and parameter id of the swept parameters.
     swept: Vec<(usize, &'static str)>,
 }
@@ -27,10 +30,11 @@ impl Sweep {
             params.set("f0", 1.0);
             params.set("f90", 1.0);
         }
-        let mut sweep = Sweep { info, params, mu: None, swept: Vec::new() };
+        let mut sweep = Sweep { info, params, mu: None, phi: None, swept: Vec::new() };
         for (i, axis) in spec.grid.axes().iter().enumerate() {
             match axis.quantity.base_id() {
                 "mu" => sweep.mu = Some(i),
+                "phi" => sweep.phi = Some(i),
                 id => sweep.swept.push((i, id)),
             }
         }
@@ -47,6 +51,12 @@ impl Sweep {
     #[must_use]
     pub fn mu(&self, at: &[f64]) -> f64 {
         self.mu.map_or(1.0, |i| at[i])
+    }
+
+    /// View at a point: its cosine, and its azimuth (0 if no axis sweeps it).
+    #[must_use]
+    pub fn view(&self, at: &[f64]) -> View {
+        View { mu: self.mu(at), phi: self.phi.map_or(0.0, |i| at[i]) }
     }
 
     /// Parameters at a point.
@@ -66,6 +76,13 @@ impl Sweep {
             }
         }
         params
+    }
+
+    /// The rule that integrates the model, in words.
+    #[must_use]
+    pub fn rule(&self) -> String {
+        let chart = (self.info.build)(&self.params).ok().and_then(|m| m.chart());
+        chart.map_or("none: the model has no chart", |c| c.name()).to_owned()
     }
 
     /// The model at a point.

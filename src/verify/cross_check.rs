@@ -2,8 +2,8 @@
 //! independent scramblings. It shares no node, no chart and no reduction with the baker.
 
 use super::{Case, Law, Outcome, seeds};
+use crate::integrate::View;
 use crate::integrate::sobol::{ReplicateMean, replicate_mean};
-use crate::math::frame;
 use crate::models::Brdf;
 use crate::tables::integral::Functional;
 use crate::tables::{place, sweep::Sweep};
@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3};
 pub static LAW: Law = Law {
     id: "cross-check",
     statement: "the baked value agrees with sampling at scrambled Sobol points",
-    margin: "6 standard errors plus the error estimate minus the difference, smallest of 12 texels",
+    margin: "6 standard errors, plus 2 / N for tails that N draws miss, plus the error estimate, minus the difference; smallest of 12 texels",
     code: 2004,
     check,
 };
@@ -22,6 +22,10 @@ pub static LAW: Law = Law {
 const REPLICATES: u32 = 16;
 const POINTS: u32 = 512;
 
+/// What N draws may have missed: tails that are hit less than once in N, with weights of about 1, do not show in the
+/// standard error (at alpha = 0.002 the rays lost at the horizon are three in a million).
+const UNSEEN: f64 = 2.0 / (REPLICATES * POINTS) as f64;
+
 /// Texels that are checked.
 const TEXELS: usize = 12;
 
@@ -29,13 +33,13 @@ const TEXELS: usize = 12;
 #[must_use]
 pub fn estimate<const N: usize>(
     model: &dyn Brdf,
-    mu_o: f64,
+    view: impl Into<View>,
     functionals: [Functional; N],
     seed: u64,
     replicates: u32,
     points: u32,
 ) -> [ReplicateMean; N] {
-    let wo = frame::from_mu(mu_o);
+    let wo = view.into().direction();
     replicate_mean(seed, replicates, points, |u| {
         let (weight, cos_d) = weight(model, wo, u);
         functionals.map(|g| weight * g.at(cos_d))
@@ -68,18 +72,18 @@ fn check(case: &Case<'_>) -> Outcome {
     let mut outcome = Outcome::start();
     for (i, texel) in seeds::texels(case.table, TEXELS, 0xc705).into_iter().enumerate() {
         let point = case.table.grid.texel(texel);
-        let mu = sweep.mu(point.values());
+        let view = sweep.view(point.values());
         let Ok(model) = sweep.model(point.values()) else { continue };
         // a mirror has no density to sample; at the horizon the sampler has nothing to see
-        if model.mirror(mu).is_some() || mu < 1e-6 {
+        if model.mirror(view.mu).is_some() || view.mu < 1e-6 {
             continue;
         }
         for (c, channel) in case.table.channels.iter().enumerate() {
             let Some(g) = functional(&channel.id) else { continue };
-            let [s] = estimate(&*model, mu, [g], 0x51ed + i as u64, REPLICATES, POINTS);
+            let [s] = estimate(&*model, view, [g], 0x51ed + i as u64, REPLICATES, POINTS);
             let k = texel * case.table.channels.len() + c;
             let (v, e) = (case.table.values[k], case.table.errors[k]);
-            outcome.tighten(6.0 * s.standard_error + e + 1e-6 - (v - s.mean).abs(), || {
+            outcome.tighten(6.0 * s.standard_error + e + UNSEEN - (v - s.mean).abs(), || {
                 format!(
                     "{} = {v:.6} against {:.6} +- {:.1e}, {}",
                     channel.id,

@@ -15,6 +15,7 @@ pub mod reconstruction;
 pub mod reversible;
 pub mod seeds;
 pub mod split;
+pub mod survey;
 pub mod tolerance;
 
 use crate::grid::Table;

@@ -15,8 +15,8 @@ pub static LAW: Law = Law {
 
 fn check(case: &Case<'_>) -> Outcome {
     let grid = &case.table.grid;
-    let at = |id: &str| grid.axes().iter().position(|a| a.quantity.base_id() == id);
-    let (Some(mu), Some(eta)) = (at("mu"), at("eta")) else {
+    let spec = &case.bound.spec;
+    let (Some(mu), Some(eta)) = (spec.axis("mu"), spec.axis("eta")) else {
         return Outcome::vacuous("no angle or index axis");
     };
     let Some(channel) =

@@ -2,8 +2,8 @@
 """Reads files of brdfbake with the OpenEXR and OpenImageIO libraries and compares what they see.
 
     pip install OpenEXR OpenImageIO numpy
-    BRDFBAKE_FOREIGN=/tmp/foreign cargo test --test foreign -- --ignored
-    python3 tests/foreign/read_back.py /tmp/foreign
+    BRDFBAKE_FOREIGN=foreign-out cargo test --test foreign -- --ignored
+    python3 tests/foreign/read_back.py foreign-out
 
 Every .exr and .png below the folder is read. Next to a file, `<name>.expected.json` (written by tests/foreign.rs) says
 which bits every channel must have; without it, the libraries are compared with each other and with the metadata in

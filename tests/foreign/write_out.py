@@ -2,8 +2,8 @@
 """Writes pictures with OpenEXR and OpenImageIO, and what they hold as JSON, for brdfbake to read.
 
     pip install OpenEXR OpenImageIO numpy
-    python3 tests/foreign/write_out.py /tmp/foreign-in
-    BRDFBAKE_FOREIGN_IN=/tmp/foreign-in cargo test --test foreign -- --ignored
+    python3 tests/foreign/write_out.py foreign-out-in
+    BRDFBAKE_FOREIGN_IN=foreign-out-in cargo test --test foreign -- --ignored
 
 The expected values are those that the same library reads back, so that lossy compressions are covered too.
 """

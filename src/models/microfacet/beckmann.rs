@@ -1,10 +1,10 @@
 //! Beckmann: the default kernel, which calls the terms node by node (erfc does not vectorise).
 
-use super::{Beckmann, Distribution, isotropic};
+use super::{Beckmann, Distribution};
 
 impl Distribution for Beckmann {
-    fn alpha(&self) -> Option<f64> {
-        isotropic([self.alpha_x(), self.alpha_y()])
+    fn widths(&self) -> [f64; 2] {
+        [self.alpha_x(), self.alpha_y()]
     }
 
     /// exp(-6.5^2) = 5e-19: below the rounding of any sum.

@@ -1,20 +1,24 @@
 //! GGX: the kernel over batches of nodes, and the one-dimensional reduction of its white albedo.
 
-use super::{Distribution, Ggx, Masking, isotropic, reduction};
+use super::{Distribution, Ggx, Masking, default_dv_nodes, reduction};
 use crate::integrate::{BATCH, Estimate, Nodes};
 use std::f64::consts::PI;
 
 impl Distribution for Ggx {
-    fn alpha(&self) -> Option<f64> {
-        isotropic([self.alpha_x(), self.alpha_y()])
+    fn widths(&self) -> [f64; 2] {
+        [self.alpha_x(), self.alpha_y()]
     }
 
     /// A plain loop over slices with + - * / sqrt only, so that the compiler can vectorise it without changing a bit.
     ///
     /// D = a^2 / (pi (a^2 cos^2 + sin^2)^2), and V without a division by a small cosine:
     /// correlated 1 / (2 (mu_o s_i + mu_i s_o)), separable 1 / ((mu_i + s_i)(mu_o + s_o)),
-    /// with s = sqrt(mu^2 + a^2 (1 - mu^2)).
+    /// with s = sqrt(mu^2 + a^2 (1 - mu^2)). Two widths go through the terms node by node.
     fn dv_nodes(&self, nodes: &Nodes, masking: Masking, out: &mut [f64; BATCH]) {
+        if self.alpha().is_none() {
+            default_dv_nodes(self, nodes, masking, out);
+            return;
+        }
         let n = nodes.len;
         let a2 = self.alpha_x() * self.alpha_x();
         let mu_o = nodes.mu_o;

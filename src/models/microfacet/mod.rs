@@ -15,7 +15,7 @@ pub use crate::terms::student_t::StudentT;
 pub use fresnel::Fresnel;
 
 use super::{Brdf, Param, ParamError, Params, Preset, Sample};
-use crate::integrate::{BATCH, Chart, Estimate, Nodes};
+use crate::integrate::{BATCH, Chart, Edge, Estimate, Nodes};
 use crate::math::frame;
 use crate::terms::smith::Ndf;
 use glam::{DVec2, DVec3};
@@ -32,25 +32,36 @@ pub enum Masking {
 
 /// What a model adds to a distribution of normals: how to integrate it, and a kernel over batches.
 pub trait Distribution: Ndf {
-    /// The width, if it is the same along both tangents; 0 is the mirror.
-    fn alpha(&self) -> Option<f64>;
+    /// The widths along both tangents; 0 is the mirror.
+    fn widths(&self) -> [f64; 2];
+
+    /// The width, if it is the same along both tangents.
+    fn alpha(&self) -> Option<f64> {
+        let [x, y] = self.widths();
+        ((x - y).abs() == 0.0).then_some(x)
+    }
 
     /// D vanishes in f64 beyond `tan(theta) = reach * alpha`; infinite for a power-law tail.
     fn reach(&self) -> f64 {
         f64::INFINITY
     }
 
-    /// `D V` at a batch of nodes of an isotropic distribution.
+    /// `D V` at a batch of nodes.
     fn dv_nodes(&self, nodes: &Nodes, masking: Masking, out: &mut [f64; BATCH]) {
-        let wo = nodes.wo();
-        for (i, o) in out[..nodes.len].iter_mut().enumerate() {
-            *o = self.d(nodes.wh(i)) * masking.visibility(self, wo, nodes.wi(i));
-        }
+        default_dv_nodes(self, nodes, masking, out);
     }
 
     /// White directional albedo by a one-dimensional reduction, if there is one.
     fn reduced_albedo(&self, _mu_o: f64, _masking: Masking, _tolerance: f64) -> Option<Estimate> {
         None
+    }
+}
+
+/// `D V` at a batch of nodes by the terms.
+fn default_dv_nodes<N: Ndf + ?Sized>(ndf: &N, nodes: &Nodes, masking: Masking, out: &mut [f64; BATCH]) {
+    let wo = nodes.wo();
+    for (i, o) in out[..nodes.len].iter_mut().enumerate() {
+        *o = ndf.d(nodes.wh(i)) * masking.visibility(ndf, wo, nodes.wi(i));
     }
 }
 
@@ -62,12 +73,6 @@ impl Masking {
             Masking::Separable => ndf.visibility_separable(wo, wi),
         }
     }
-}
-
-/// Both widths, as a model holds them. A width of 0 is the mirror, which has no density.
-#[must_use]
-pub(super) fn isotropic(alpha: [f64; 2]) -> Option<f64> {
-    ((alpha[0] - alpha[1]).abs() == 0.0).then_some(alpha[0])
 }
 
 /// A microfacet reflection.
@@ -109,7 +114,14 @@ impl<D: Distribution> Brdf for Microfacet<D> {
 
     fn chart(&self) -> Option<Chart> {
         let reach = self.distribution.reach();
-        self.distribution.alpha().map(|alpha| Chart::HalfVector { alpha, reach, kinks: false })
+        Some(match self.distribution.alpha() {
+            Some(alpha) => Chart::HalfVector { alpha, reach, kinks: false },
+            None => Chart::Ellipse { alpha: self.distribution.widths(), reach, edge: Edge::Layer },
+        })
+    }
+
+    fn turns(&self) -> bool {
+        self.distribution.alpha().is_none()
     }
 
     fn eval_nodes(&self, nodes: &Nodes, out: &mut [f64; BATCH]) {

@@ -1,10 +1,10 @@
 //! Student's t: the default kernel, which calls the terms node by node.
 
-use super::{Distribution, StudentT, isotropic};
+use super::{Distribution, StudentT};
 
 impl Distribution for StudentT {
-    fn alpha(&self) -> Option<f64> {
-        isotropic([self.alpha_x(), self.alpha_y()])
+    fn widths(&self) -> [f64; 2] {
+        [self.alpha_x(), self.alpha_y()]
     }
 
     /// Where `(1 + X / (gamma - 1))^(-gamma)` is below 1e-19, X = tan^2 / alpha^2; infinite for a long tail.

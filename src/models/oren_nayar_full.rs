@@ -1,0 +1,111 @@
+//! Oren-Nayar, the full model: masking with all its terms, and one interreflection between facing facets.
+//!
+//! Parameters as in [`oren_nayar`](super::oren_nayar); `rho` enters twice, since light that met two facets has lost
+//! twice. The fit dips below 0 where both directions graze from opposite sides; the value is clamped at 0 there.
+//!
+//! Recipe: `model = "oren-nayar-full"`, `params = { rho = 0.8, sigma = 0.35 }`.
+
+use super::lobes::{Diffuse, Reflector};
+use super::oren_nayar::{RHO, SIGMA};
+use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use crate::cite;
+use crate::integrate::Chart;
+use crate::math::frame;
+use glam::DVec3;
+use std::f64::consts::FRAC_1_PI;
+
+/// Registry entry.
+pub static INFO: ModelInfo = ModelInfo {
+    id: "oren-nayar-full",
+    title: "Oren-Nayar, full",
+    formula: "f = max(0, rho / pi (C1 + c C2 tan(b) + (1 - |c|) C3 tan((a + b) / 2)) \
+        + 0.17 rho^2 / pi s2 / (s2 + 0.13) (1 - c (2 b / pi)^2)), c = cos(phi_i - phi_o), s2 = sigma^2, \
+        a = max(theta_i, theta_o), b = min(theta_i, theta_o), C1 = 1 - 0.5 s2 / (s2 + 0.33), \
+        C2 = 0.45 s2 / (s2 + 0.09) (sin(a) - (2 b / pi)^3 if c < 0), C3 = 0.125 s2 / (s2 + 0.09) (4 a b / pi^2)^2",
+    sources: &[(
+        cite::OREN_NAYAR_1994,
+        "section 4.3, the functional approximation (equation numbers not verified)",
+    )],
+    params: &[RHO, SIGMA],
+    laws: Laws { reciprocal: true, passive: false, isotropic: true },
+    notes: "Not passive: E reaches 1.050 (rho = 1, sigma near 0.3, grazing). The formula is negative for sigma > 0.68 at low rho \
+        (-0.16 rho / pi at sigma = 1, both directions grazing, opposite azimuths) and is clamped at 0. \
+        Kinks at mu_i = mu_o and at azimuth pi/2, and where the clamp begins.",
+    also: &[Alias { name: "oren_nayar_full", set: &[] }],
+    known: &[
+        Known {
+            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            params: &[("rho", "1"), ("sigma", "0.25")],
+            value: 0.302_974_780_364_264_56,
+            relative: 1e-13,
+            source: "formula in 50-digit arithmetic",
+        },
+        Known {
+            what: Quantity::Albedo(1.0),
+            params: &[("rho", "1"), ("sigma", "0.25")],
+            value: 0.975_576_970_799_900_7,
+            relative: 1e-12,
+            source: "closed form: E(1) = rho C1 + 0.17 rho^2 s2 / (s2 + 0.13)",
+        },
+    ],
+    splits: false,
+    build,
+};
+
+fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
+    let (rho, sigma) = (params.number("rho"), params.number("sigma"));
+    let s2 = sigma * sigma;
+    let steep = s2 / (s2 + 0.09);
+    Ok(Box::new(Diffuse(OrenNayarFull {
+        rho,
+        c1: 1.0 - 0.5 * s2 / (s2 + 0.33),
+        c2: 0.45 * steep,
+        c3: 0.125 * steep,
+        twice: 0.17 * rho * s2 / (s2 + 0.13),
+    })))
+}
+
+/// The coefficients without their angles; `twice` is the interreflection over rho.
+#[derive(Debug)]
+struct OrenNayarFull {
+    rho: f64,
+    c1: f64,
+    c2: f64,
+    c3: f64,
+    twice: f64,
+}
+
+impl OrenNayarFull {
+    /// The smallest value over rho / pi: both directions grazing from opposite sides, where `sin a - (2b/pi)^3` over
+    /// the height is 6/pi.
+    fn least(&self) -> f64 {
+        self.c1 - self.c2 * 6.0 * FRAC_1_PI + 2.0 * self.twice
+    }
+
+    /// The formula before the clamp.
+    fn unclamped(&self, wo: DVec3, wi: DVec3) -> f64 {
+        let (theta_o, theta_i) = (frame::theta(wo), frame::theta(wi));
+        let (a, b) = (theta_o.max(theta_i), theta_o.min(theta_i));
+        let sines = frame::sin_theta(wo) * frame::sin_theta(wi);
+        // at the normal the azimuth is undefined, and every term that has it is 0
+        let c = if sines > 0.0 { ((wo.x * wi.x + wo.y * wi.y) / sines).clamp(-1.0, 1.0) } else { 0.0 };
+        let turn = 2.0 * FRAC_1_PI * b;
+        let far = if c < 0.0 { turn * turn * turn } else { 0.0 };
+        let area = 2.0 * FRAC_1_PI * a * turn;
+        let single = self.c1
+            + c * self.c2 * (libm::sin(a) - far) * libm::tan(b)
+            + (1.0 - c.abs()) * self.c3 * area * area * libm::tan(0.5 * (a + b));
+        self.rho * FRAC_1_PI * (single + self.twice * (1.0 - c * turn * turn))
+    }
+}
+
+impl Reflector for OrenNayarFull {
+    fn f(&self, wo: DVec3, wi: DVec3) -> f64 {
+        self.unclamped(wo, wi).max(0.0)
+    }
+
+    /// None where the clamp acts: its edge runs across every panel.
+    fn chart(&self) -> Option<Chart> {
+        (self.least() > 0.0).then_some(Chart::Folded)
+    }
+}

@@ -1,0 +1,308 @@
+//! Binding a table of a recipe, with all its faults and not only the first: each fault is reported at its key, the
+//! request is repaired there, and bound again.
+
+use super::document::Entry;
+use super::fault::{Fault, Faults};
+use super::read_axis::canonical;
+use super::span::join;
+use crate::grid::{Axis, AxisError, GridError, Warp};
+use crate::models::{self, Kind, ModelInfo, Param, ParamError};
+use crate::tables::spec::Request;
+use crate::tables::{self, BindError, Bound, ModelUse, TableInfo};
+use serde_json::Map;
+
+/// More repairs than a table of four axes can need; a limit that stops any loop.
+const REPAIRS: usize = 256;
+
+struct Binder<'a> {
+    entry: &'a Entry,
+    request: Request,
+    /// For each axis of the request, its number in the recipe.
+    numbers: Vec<usize>,
+    /// Canonical parameter id and the key in the recipe.
+    keys: Vec<(String, String)>,
+}
+
+/// Binds a table. None if it has a fault.
+pub(super) fn bind(entry: &Entry, faults: &mut Faults) -> Option<Bound> {
+    let before = faults.len();
+    let kind = entry.kind.as_deref().and_then(tables::find);
+    let readable = entry.axes.iter().flatten().all(Option::is_some);
+    if entry.kind.is_none() || kind.is_none() || !readable {
+        check_axes_alone(entry, faults);
+    }
+    let mut binder = Binder::new(entry, kind, faults)?;
+    if !readable {
+        // the kind's own axes stand in, so that layout, model and parameters are checked
+        binder.request.axes = None;
+    }
+    let bound = binder.run(readable, faults)?;
+    check_swept(entry, &bound, faults);
+    check_split(entry, &bound, &binder.keys, faults);
+    (readable && faults.len() == before).then_some(bound)
+}
+
+impl<'a> Binder<'a> {
+    fn new(entry: &'a Entry, kind: Option<&'static TableInfo>, faults: &mut Faults) -> Option<Binder<'a>> {
+        let mut request = Request {
+            kind: entry.kind.clone()?,
+            layout: entry.layout.clone(),
+            model: entry.model.clone(),
+            params: Map::new(),
+            axes: None,
+        };
+        let declared: Vec<&Param> = kind.map(|k| declared(k, entry)).unwrap_or_default();
+        let mut keys: Vec<(String, String)> = Vec::new();
+        for (key, value) in &entry.params {
+            let id = declared.iter().find(|p| p.id == key || p.also.contains(&key.as_str()));
+            let id = id.map_or_else(|| key.clone(), |p| p.id.to_owned());
+            if let Some((_, other)) = keys.iter().find(|(k, _)| *k == id) {
+                let why = format!("`{other}` and `{key}` are the same");
+                let path = join(&format!("{}.params", entry.path), key);
+                faults.key(path, Fault::Twice { what: "parameter", got: id.clone(), why });
+            }
+            request.params.insert(id.clone(), value.clone());
+            keys.push((id, key.clone()));
+        }
+        let mut numbers = Vec::new();
+        if let Some(axes) = &entry.axes {
+            let known = axes.iter().enumerate().filter_map(|(i, a)| Some((i, canonical(a.clone()?))));
+            let (n, axes): (Vec<usize>, Vec<Axis>) = known.unzip();
+            numbers = n;
+            request.axes = Some(axes);
+        }
+        Some(Binder { entry, request, numbers, keys })
+    }
+
+    /// Binds, reporting and repairing faults on the way. `axes`: are they the recipe's?
+    fn run(&mut self, axes: bool, faults: &mut Faults) -> Option<Bound> {
+        for _ in 0..REPAIRS {
+            let error = match self.request.bind() {
+                Ok(bound) => return Some(bound),
+                Err(error) => error,
+            };
+            let about_axes = matches!(
+                error,
+                BindError::Grid(_)
+                    | BindError::MissingAxis { .. }
+                    | BindError::IdleAxis { .. }
+                    | BindError::Both { .. }
+            );
+            if about_axes && !axes {
+                return None;
+            }
+            self.report(&error, faults);
+            if !self.repair(&error) {
+                return None;
+            }
+        }
+        None
+    }
+
+    fn report(&self, error: &BindError, faults: &mut Faults) {
+        let at = |key: &str| join(&self.entry.path, key);
+        let fault = Fault::Bind(error.clone());
+        match error {
+            BindError::Unknown { what: "table", .. } => faults.value(at("kind"), fault),
+            BindError::Unknown { what, .. } => faults.value(at(what), fault),
+            BindError::Model { .. } => faults.value(at("model"), fault),
+            BindError::Param(e) => match e.key().map(|k| self.param(k)) {
+                Some(path) if matches!(e, ParamError::Unknown { .. }) => faults.key(path, fault),
+                Some(path) => faults.value(path, fault),
+                None => faults.value(at("params"), fault),
+            },
+            BindError::Grid(e) => faults.value(self.grid_path(e), fault),
+            BindError::MissingAxis { .. } => faults.value(at("axis"), fault),
+            BindError::IdleAxis { axis, .. } => faults.value(self.axis_path(axis, ".id"), fault),
+            BindError::Both { key, .. } => faults.key(self.param(key), fault),
+        }
+    }
+
+    /// Path of a parameter under the key that the recipe uses for it.
+    fn param(&self, id: &str) -> String {
+        let key = self.keys.iter().find(|(k, _)| k == id).map_or(id, |(_, key)| key);
+        join(&join(&self.entry.path, "params"), key)
+    }
+
+    fn grid_path(&self, error: &GridError) -> String {
+        match error {
+            GridError::Axis(e) => self.axis_path(axis_id(e), axis_key(e)),
+            GridError::Twice(base) => {
+                let mut same = self.axes().iter().enumerate().filter(|(_, a)| a.quantity.base_id() == *base);
+                self.axis_number_path(same.nth(1).map(|(i, _)| i), ".id")
+            }
+            GridError::Coupling { id, .. } | GridError::Chain(id) => self.axis_path(id, ".warp"),
+            GridError::Count(_) => join(&self.entry.path, "axis"),
+            GridError::Size(_) => {
+                let longest = self.axes().iter().enumerate().max_by_key(|(_, a)| a.len).map(|(i, _)| i);
+                self.axis_number_path(longest, ".length")
+            }
+        }
+    }
+
+    fn axes(&self) -> &[Axis] {
+        self.request.axes.as_deref().unwrap_or_default()
+    }
+
+    fn find(&self, id: &str) -> Option<usize> {
+        self.axes().iter().position(|a| a.quantity.id == id)
+    }
+
+    fn axis_path(&self, id: &str, key: &str) -> String {
+        self.axis_number_path(self.find(id), key)
+    }
+
+    fn axis_number_path(&self, i: Option<usize>, key: &str) -> String {
+        match i.and_then(|i| self.numbers.get(i)) {
+            Some(n) => format!("{}.axis[{n}]{key}", self.entry.path),
+            None => join(&self.entry.path, "axis"),
+        }
+    }
+
+    /// Takes the fault out of the request. False if nothing is left to check.
+    fn repair(&mut self, error: &BindError) -> bool {
+        match error {
+            BindError::Unknown { what: "layout", .. } => self.request.layout.take().is_some(),
+            BindError::Param(e) => e.key().is_some_and(|key| self.request.params.remove(key).is_some()),
+            BindError::Both { key, .. } => self.request.params.remove(key).is_some(),
+            BindError::IdleAxis { axis, .. } => self.find(axis).is_some_and(|i| self.remove_axis(i)),
+            BindError::MissingAxis { needed, .. } => self.add_axis(needed),
+            BindError::Grid(e) => self.repair_grid(e),
+            BindError::Unknown { .. } | BindError::Model { .. } => false,
+        }
+    }
+
+    fn repair_grid(&mut self, error: &GridError) -> bool {
+        match error {
+            GridError::Axis(e) => {
+                let i = self.find(axis_id(e));
+                let axis = i.and_then(|i| self.request.axes.as_mut()?.get_mut(i));
+                axis.is_some_and(|axis| repair_axis(axis, e))
+            }
+            GridError::Twice(base) => {
+                let i = self.axes().iter().rposition(|a| a.quantity.base_id() == *base);
+                i.is_some_and(|i| self.remove_axis(i))
+            }
+            GridError::Coupling { id, .. } | GridError::Chain(id) => {
+                let i = self.find(id);
+                let axis = i.and_then(|i| self.request.axes.as_mut()?.get_mut(i));
+                axis.is_some_and(|axis| {
+                    axis.warp = Warp::Linear;
+                    true
+                })
+            }
+            GridError::Count(_) | GridError::Size(_) => false,
+        }
+    }
+
+    fn remove_axis(&mut self, i: usize) -> bool {
+        let Some(axes) = self.request.axes.as_mut().filter(|axes| i < axes.len()) else { return false };
+        axes.remove(i);
+        self.numbers.remove(i);
+        true
+    }
+
+    /// The kind's own axis for a coordinate stands in.
+    fn add_axis(&mut self, base: &str) -> bool {
+        let own = tables::find(&self.request.kind)
+            .and_then(|kind| (kind.axes)().into_iter().find(|a| a.quantity.base_id() == base));
+        match (self.request.axes.as_mut(), own) {
+            (Some(axes), Some(mut axis)) => {
+                axis.warp = Warp::Linear;
+                axes.push(axis);
+                self.numbers.push(usize::MAX);
+                true
+            }
+            _ => false,
+        }
+    }
+}
+
+/// Parameters of the kind and of the model that the entry names or the kind takes by itself.
+fn declared(kind: &'static TableInfo, entry: &Entry) -> Vec<&'static Param> {
+    let model: Option<&'static ModelInfo> = match kind.model {
+        ModelUse::None => None,
+        ModelUse::Any(own) | ModelUse::Split(own) => {
+            models::find(entry.model.as_deref().unwrap_or(own)).map(|(info, _)| info)
+        }
+    };
+    kind.params.iter().chain(model.iter().flat_map(|m| m.params)).collect()
+}
+
+fn axis_id(error: &AxisError) -> &'static str {
+    match error {
+        AxisError::Domain { id, .. }
+        | AxisError::Length { id, .. }
+        | AxisError::Warp { id, .. }
+        | AxisError::Clamp { id, .. }
+        | AxisError::Offset { id, .. } => id,
+    }
+}
+
+fn axis_key(error: &AxisError) -> &'static str {
+    match error {
+        AxisError::Domain { .. } => ".domain",
+        AxisError::Length { .. } => ".length",
+        AxisError::Warp { .. } => ".warp",
+        AxisError::Clamp { .. } => ".clamp",
+        AxisError::Offset { .. } => ".offset",
+    }
+}
+
+/// Puts a good value in the place of the one at fault.
+fn repair_axis(axis: &mut Axis, error: &AxisError) -> bool {
+    match error {
+        AxisError::Domain { .. } => axis.domain = axis.quantity.domain,
+        AxisError::Length { .. } => axis.len = 2,
+        AxisError::Warp { .. } => axis.warp = Warp::Linear,
+        AxisError::Clamp { .. } => axis.clamp = None,
+        AxisError::Offset { .. } => axis.offset = 0.0,
+    }
+    true
+}
+
+/// Checks each axis that could be read, where the table as a whole cannot be bound.
+fn check_axes_alone(entry: &Entry, faults: &mut Faults) {
+    for (i, axis) in entry.axes.iter().flatten().enumerate() {
+        let Some(mut axis) = axis.clone() else { continue };
+        while let Err(error) = axis.check() {
+            let path = format!("{}.axis[{i}]{}", entry.path, axis_key(&error));
+            repair_axis(&mut axis, &error);
+            faults.value(path, Fault::Bind(BindError::Grid(GridError::Axis(error))));
+        }
+    }
+}
+
+/// An axis that sweeps a parameter must stay in the range of the parameter.
+fn check_swept(entry: &Entry, bound: &Bound, faults: &mut Faults) {
+    let spec = &bound.spec;
+    let model = spec.model.as_ref().map(|(info, _)| (info.id, info.params));
+    for (i, axis) in spec.grid.axes().iter().enumerate() {
+        for (owner, params) in model.into_iter().chain([(spec.kind.id, spec.kind.params)]) {
+            let Some(param) = params.iter().find(|p| p.id == axis.quantity.base_id()) else { continue };
+            let Kind::Number { min, max, .. } = param.kind else { continue };
+            let ends = axis.clamp.unwrap_or(axis.domain).map(|v| axis.quantity.to_base(v));
+            let got = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+            if got[0] < min || got[1] > max {
+                let axis_id = axis.quantity.id;
+                let fault =
+                    Fault::SweptRange { axis: axis_id, param: param.id, got, owner, allowed: [min, max] };
+                faults.value(format!("{}.axis[{i}].domain", entry.path), fault);
+            }
+        }
+    }
+}
+
+/// A table that splits the Fresnel factor off sets it to 1: another value would be ignored in silence.
+fn check_split(entry: &Entry, bound: &Bound, keys: &[(String, String)], faults: &mut Faults) {
+    let kind = bound.spec.kind;
+    let (ModelUse::Split(_), Some((_, params))) = (kind.model, &bound.spec.model) else { return };
+    for (id, key) in keys {
+        let Some(id) = ["f0", "f90"].into_iter().find(|f| f == id) else { continue };
+        let got = params.number(id);
+        if (got - 1.0).abs() > 0.0 {
+            let path = join(&join(&entry.path, "params"), key);
+            faults.value(path, Fault::SplitFresnel { kind: kind.id, key: id, got });
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! The file as it is written: every key read and of the right type, nothing looked up yet but quantities.
+
+use super::fault::{Fault, Faults};
+use super::plan::Output;
+use super::read_axis;
+use super::section::{Section, wrong};
+use super::{MAX_TABLES, formats};
+use crate::grid::Axis;
+use crate::grid::provenance::Waiver;
+use crate::tables::driver::OnMiss;
+use serde_json::{Map, Value as Json};
+use toml::de::DeTable;
+
+const ROOT: &[&str] = &["name", "tolerance", "table"];
+const TABLE: &[&str] = &[
+    "kind",
+    "name",
+    "layout",
+    "model",
+    "params",
+    "tolerance",
+    "outputs",
+    "on-miss",
+    "reconstruction",
+    "waive",
+    "axis",
+];
+
+/// A recipe before it is resolved. What could not be read is none, and a fault has been reported for it.
+#[derive(Debug, Default)]
+pub(super) struct Document {
+    pub(super) name: Option<String>,
+    pub(super) tolerance: Option<f64>,
+    pub(super) tables: Vec<Entry>,
+}
+
+/// A table of a recipe before it is resolved.
+#[derive(Debug, Default)]
+pub(super) struct Entry {
+    /// `table[0]`.
+    pub(super) path: String,
+    pub(super) name: Option<String>,
+    pub(super) kind: Option<String>,
+    pub(super) layout: Option<String>,
+    pub(super) model: Option<String>,
+    pub(super) params: Map<String, Json>,
+    pub(super) tolerance: Option<f64>,
+    pub(super) outputs: Option<Vec<Option<Output>>>,
+    pub(super) on_miss: OnMiss,
+    pub(super) reconstruction: bool,
+    pub(super) waivers: Vec<Option<Waiver>>,
+    /// None: the kind's own. An axis that could not be read is none.
+    pub(super) axes: Option<Vec<Option<Axis>>>,
+}
+
+/// Reads the keys of a file.
+pub(super) fn read(root: &DeTable<'_>, faults: &mut Faults) -> Document {
+    let section = Section::new(root, "", "the recipe", ROOT, faults);
+    section.require("name", "name = \"my-tables\"", faults);
+    section.require("table", "[[table]]", faults);
+    let mut document = Document {
+        name: section.text("name", faults),
+        tolerance: section.number("tolerance", faults),
+        tables: Vec::new(),
+    };
+    let Some(tables) = section.tables("table", "[[table]]", faults) else { return document };
+    if tables.is_empty() || tables.len() > MAX_TABLES {
+        let allowed = format!("1 to {MAX_TABLES}");
+        faults.key("table", Fault::Count { key: "table", got: tables.len(), allowed });
+    }
+    for (path, table) in tables.into_iter().take(MAX_TABLES) {
+        document.tables.push(entry(table, path, faults));
+    }
+    document
+}
+
+fn entry(table: &DeTable<'_>, path: String, faults: &mut Faults) -> Entry {
+    let section = Section::new(table, &path, "[[table]]", TABLE, faults);
+    section.require("kind", "kind = \"dfg\"", faults);
+    section.require("name", "name = \"ggx-dfg\"", faults);
+    let on_miss = section.word("on-miss", &[("fail", OnMiss::Fail), ("report", OnMiss::Report)], faults);
+    Entry {
+        name: section.text("name", faults),
+        kind: section.text("kind", faults),
+        layout: section.text("layout", faults),
+        model: section.text("model", faults),
+        params: params(&section, faults),
+        tolerance: section.number("tolerance", faults),
+        outputs: outputs(&section, faults),
+        on_miss: on_miss.unwrap_or_default(),
+        reconstruction: section
+            .word("reconstruction", &[("on", true), ("off", false)], faults)
+            .unwrap_or(true),
+        waivers: waivers(&section, faults),
+        axes: section
+            .tables("axis", "[[table.axis]]", faults)
+            .map(|axes| axes.into_iter().map(|(path, axis)| read_axis::read(axis, &path, faults)).collect()),
+        path,
+    }
+}
+
+fn params(section: &Section<'_>, faults: &mut Faults) -> Map<String, Json> {
+    let mut params = Map::new();
+    let Some(value) = section.get("params") else { return params };
+    let Some(table) = value.as_table() else {
+        faults.value(section.path("params"), wrong("params", value, "a table, such as { f0 = 0.04 }"));
+        return params;
+    };
+    for (key, value) in table {
+        match read_axis::param(value.get_ref()) {
+            Some(json) => drop(params.insert(key.get_ref().to_string(), json)),
+            None => faults.value(
+                super::span::join(&section.path("params"), key.get_ref()),
+                wrong(&super::fault::show(key.get_ref()), value.get_ref(), "a finite number or a word"),
+            ),
+        }
+    }
+    params
+}
+
+fn outputs(section: &Section<'_>, faults: &mut Faults) -> Option<Vec<Option<Output>>> {
+    let list = section.list("outputs", "a list, such as [\"exr:half\"]", faults)?;
+    if list.is_empty() || list.len() > 64 {
+        let allowed = "1 to 64".to_owned();
+        faults.value(section.path("outputs"), Fault::Count { key: "outputs", got: list.len(), allowed });
+        return Some(vec![None]);
+    }
+    let mut outputs = Vec::new();
+    for (i, item) in list.iter().enumerate() {
+        let path = format!("{}[{i}]", section.path("outputs"));
+        let output = item.get_ref().as_str().and_then(|text| text.split_once(':'));
+        if output.is_none() {
+            let fault = match item.get_ref().as_str() {
+                Some(got) => Fault::OutputForm { got: super::fault::show(got), allowed: all_outputs() },
+                None => wrong(&format!("outputs[{i}]"), item.get_ref(), "a string, such as \"exr:half\""),
+            };
+            faults.value(path, fault);
+        }
+        outputs.push(output.map(|(c, s)| Output { container: c.to_owned(), storage: s.to_owned() }));
+    }
+    Some(outputs)
+}
+
+/// `exr:half, exr:float, ...`.
+fn all_outputs() -> String {
+    let pairs = formats().iter().flat_map(|f| f.storages.iter().map(|s| format!("{}:{}", f.container, s.id)));
+    pairs.collect::<Vec<_>>().join(", ")
+}
+
+fn waivers(section: &Section<'_>, faults: &mut Faults) -> Vec<Option<Waiver>> {
+    let expected = "a list, such as [{ law = \"energy\", reason = \"...\" }]";
+    let mut waivers = Vec::new();
+    for (path, table) in section.tables("waive", expected, faults).unwrap_or_default() {
+        let waiver = Section::new(table, &path, "waive", &["law", "reason"], faults);
+        waiver.require("law", "law = \"energy\"", faults);
+        waiver.require("reason", "reason = \"why this table may break it\"", faults);
+        let (law, reason) = (waiver.text("law", faults), waiver.text("reason", faults));
+        waivers.push(law.zip(reason).map(|(law, reason)| Waiver { law, reason: reason.trim().to_owned() }));
+    }
+    waivers
+}

@@ -1,0 +1,351 @@
+//! What can be wrong with a recipe: one enum, whose variants carry what was given and what is allowed.
+
+use crate::grid::{AxisError, GridError};
+use crate::models::ParamError;
+use crate::tables::BindError;
+
+/// A fault of a recipe. `Display` says what is wrong and what was given; [`Fault::allowed`] and [`Fault::remedy`] go on.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Fault {
+    /// Not TOML.
+    #[error("{0}")]
+    Syntax(String),
+    /// Not UTF-8.
+    #[error("the file is not UTF-8 text")]
+    NotUtf8,
+    /// Larger than [`MAX_BYTES`](super::MAX_BYTES).
+    #[error("the file has {bytes} bytes or more")]
+    FileTooLarge {
+        /// Size, as far as it was read.
+        bytes: usize,
+        /// The limit.
+        limit: usize,
+    },
+    /// A key that has no meaning at its place.
+    #[error("unknown key `{key}`")]
+    UnknownKey {
+        /// The key.
+        key: String,
+        /// Where: `[[table.axis]]`.
+        section: &'static str,
+        /// The keys there are.
+        allowed: String,
+        /// The nearest one.
+        suggestion: Option<String>,
+    },
+    /// A required key that is not there.
+    #[error("{section} has no `{key}`")]
+    MissingKey {
+        /// Where: `[[table.axis]]`.
+        section: &'static str,
+        /// The key.
+        key: &'static str,
+        /// What to write.
+        example: &'static str,
+    },
+    /// A value of the wrong type.
+    #[error("`{key}` is {got}")]
+    Type {
+        /// The key.
+        key: String,
+        /// The type given.
+        got: &'static str,
+        /// The type wanted.
+        expected: &'static str,
+        /// What to write instead.
+        remedy: Option<&'static str>,
+    },
+    /// A word or id that is not offered.
+    #[error("unknown {what} `{got}`")]
+    Word {
+        /// What it names: `quantity`, `texel`, `law`.
+        what: String,
+        /// The word given.
+        got: String,
+        /// The words there are.
+        allowed: String,
+        /// The nearest one.
+        suggestion: Option<String>,
+    },
+    /// A number outside its range, or not a number.
+    #[error("{key} = {} is out of range", number(*got))]
+    Range {
+        /// The key.
+        key: String,
+        /// The number given.
+        got: f64,
+        /// Least.
+        min: f64,
+        /// Largest.
+        max: f64,
+    },
+    /// A list with too few or too many entries.
+    #[error("`{key}` has {got} {}", if *got == 1 { "entry" } else { "entries" })]
+    Count {
+        /// The key.
+        key: &'static str,
+        /// Entries given.
+        got: usize,
+        /// What is allowed.
+        allowed: String,
+    },
+    /// A text that is empty or too long.
+    #[error("`{key}` {}", if *got == 0 { "is empty".to_owned() } else { format!("has {got} characters") })]
+    TextLength {
+        /// The key.
+        key: String,
+        /// Characters given.
+        got: usize,
+        /// The limit.
+        limit: usize,
+    },
+    /// A name that is not portable.
+    #[error("{what} `{got}` {why}")]
+    Name {
+        /// `recipe name` or `table name`.
+        what: &'static str,
+        /// The name.
+        got: String,
+        /// What is wrong with it.
+        why: &'static str,
+        /// The rule.
+        allowed: &'static str,
+    },
+    /// Something that may be there once.
+    #[error("{what} `{got}` is given twice")]
+    Twice {
+        /// What: `table name`, `waiver of law`, `parameter`.
+        what: &'static str,
+        /// Its value.
+        got: String,
+        /// Why that matters.
+        why: String,
+    },
+    /// A warp table that is not one of the forms.
+    #[error("this is not a warp: {why}")]
+    WarpForm {
+        /// What is wrong.
+        why: &'static str,
+    },
+    /// An output that is not `container:storage`.
+    #[error("output `{got}` is not of the form `container:storage`")]
+    OutputForm {
+        /// The text given.
+        got: String,
+        /// What there is.
+        allowed: String,
+    },
+    /// A storage that spreads its steps over the range of a channel, and a channel with a very wide range.
+    #[error("{storage} cannot store channel {channel}: its range is too wide")]
+    WideRange {
+        /// Storage id.
+        storage: &'static str,
+        /// Channel id.
+        channel: &'static str,
+        /// Range of the channel.
+        range: [f64; 2],
+    },
+    /// A waiver for a law that is not checked.
+    #[error("table {kind} does not check law `{law}`")]
+    IdleWaiver {
+        /// Table kind.
+        kind: &'static str,
+        /// The law.
+        law: String,
+        /// The laws that it checks.
+        allowed: String,
+    },
+    /// A swept parameter that leaves its range on the axis.
+    #[error("axis {axis} sweeps {param} over [{}, {}]", number(.got[0]), number(.got[1]))]
+    SweptRange {
+        /// Axis id.
+        axis: &'static str,
+        /// Parameter id.
+        param: &'static str,
+        /// Base values at the ends of the axis.
+        got: [f64; 2],
+        /// Model or kind that has the parameter.
+        owner: &'static str,
+        /// Its range.
+        allowed: [f64; 2],
+    },
+    /// A Fresnel parameter of a table that splits the Fresnel factor off.
+    #[error("{key} = {} has no effect: table {kind} splits the Fresnel factor off", number(*got))]
+    SplitFresnel {
+        /// Table kind.
+        kind: &'static str,
+        /// `f0` or `f90`.
+        key: &'static str,
+        /// The value given.
+        got: f64,
+    },
+    /// The table cannot be bound.
+    #[error("{}", bind_message(.0))]
+    Bind(BindError),
+}
+
+impl Fault {
+    /// What is allowed instead, or the nearest thing.
+    #[must_use]
+    pub fn allowed(&self) -> Option<String> {
+        let between = |min: f64, max: f64| format!("allowed: {} to {}", number(min), number(max));
+        match self {
+            Fault::FileTooLarge { limit, .. } => Some(format!("allowed: {limit} bytes")),
+            Fault::UnknownKey { suggestion, .. } => suggestion.as_deref().map(did_you_mean),
+            Fault::Word { suggestion, allowed, .. } => Some(hint(suggestion.as_deref(), allowed)),
+            Fault::Type { expected, .. } => Some(format!("expected {expected}")),
+            Fault::Range { min, max, .. } => Some(between(*min, *max)),
+            Fault::Count { allowed, .. } => Some(format!("allowed: {allowed}")),
+            Fault::TextLength { limit, .. } => Some(format!("allowed: 1 to {limit} characters")),
+            Fault::Name { allowed, .. } => Some(format!("allowed: {allowed}")),
+            Fault::Twice { why, .. } => Some(why.clone()),
+            Fault::OutputForm { allowed, .. } => Some(format!("there is {allowed}")),
+            Fault::IdleWaiver { allowed, .. } => Some(format!("it checks {allowed}")),
+            Fault::SweptRange { owner, allowed: [min, max], .. } => {
+                Some(format!("{owner} takes {} to {}", number(*min), number(*max)))
+            }
+            Fault::SplitFresnel { .. } => Some("allowed: 1".to_owned()),
+            Fault::Bind(
+                BindError::Unknown { suggestion, allowed, .. }
+                | BindError::Param(ParamError::Unknown { suggestion, allowed, .. }),
+            ) => Some(hint(suggestion.as_deref(), allowed)),
+            Fault::Bind(BindError::Param(ParamError::Range { min, max, .. })) => Some(between(*min, *max)),
+            Fault::Bind(BindError::Param(ParamError::Kind { allowed, .. })) => {
+                Some(format!("expected {allowed}"))
+            }
+            _ => None,
+        }
+    }
+
+    /// What to do about it.
+    #[must_use]
+    pub fn remedy(&self) -> Option<String> {
+        let text = match self {
+            Fault::UnknownKey { section, allowed, .. } => return Some(format!("{section} has {allowed}")),
+            Fault::Word { suggestion: Some(_), allowed, .. } => return Some(format!("there is {allowed}")),
+            Fault::Bind(
+                BindError::Unknown { suggestion: Some(_), allowed, .. }
+                | BindError::Param(ParamError::Unknown { suggestion: Some(_), allowed, .. }),
+            ) => return Some(format!("there is {allowed}")),
+            Fault::MissingKey { example, .. } => return Some(format!("add `{example}`")),
+            Fault::Type { remedy, .. } => (*remedy)?,
+            Fault::NotUtf8 => "save it as UTF-8",
+            Fault::WarpForm { .. } => {
+                "write { power = p }, { one-minus-power = p } or { coupled = \"alpha\", power = 2.0, scale = 1.0, exponent = 1.0 }"
+            }
+            Fault::WideRange { .. } => "store it as half or float, or take a layout with bounded channels",
+            Fault::SweptRange { .. } => "give the axis a domain inside that range",
+            Fault::SplitFresnel { .. } => "leave it out; the shader applies F0 and F90",
+            Fault::Bind(e) => bind_remedy(e)?,
+            _ => return None,
+        };
+        Some(text.to_owned())
+    }
+}
+
+fn bind_message(error: &BindError) -> String {
+    match error {
+        BindError::Unknown { what: "table", got, .. } => format!("unknown table kind `{}`", show(got)),
+        BindError::Unknown { what, got, .. } => format!("unknown {what} `{}`", show(got)),
+        BindError::Param(ParamError::Unknown { model, key, .. }) => {
+            format!("{model} has no parameter `{}`", show(key))
+        }
+        BindError::Param(ParamError::Range { model, key, got, .. }) => {
+            format!("{model}: {key} = {} is out of range", number(*got))
+        }
+        BindError::Param(ParamError::Kind { model, key, got, .. }) => {
+            format!("{model}: {key} cannot be {}", show(got))
+        }
+        other => other.to_string(),
+    }
+}
+
+fn bind_remedy(error: &BindError) -> Option<&'static str> {
+    match error {
+        BindError::MissingAxis { .. } => {
+            Some("add a [[table.axis]] for it, or leave all axes out to get the kind's own")
+        }
+        BindError::IdleAxis { .. } => Some("leave the axis out"),
+        BindError::Both { .. } => Some("leave the parameter out, or the axis"),
+        BindError::Model { why, .. } if why.starts_with("given") => Some("leave the model out"),
+        BindError::Grid(GridError::Size(_)) => Some("make an axis shorter"),
+        BindError::Grid(GridError::Twice(_)) => Some("leave one of them out"),
+        BindError::Grid(GridError::Axis(AxisError::Domain { .. })) => {
+            Some("write the low end first; to turn the axis round, use direction = \"descending\"")
+        }
+        _ => None,
+    }
+}
+
+fn did_you_mean(word: impl AsRef<str>) -> String {
+    format!("did you mean `{}`?", word.as_ref())
+}
+
+fn hint(suggestion: Option<&str>, allowed: &str) -> String {
+    suggestion.map_or_else(|| format!("there is {allowed}"), did_you_mean)
+}
+
+/// A number as a person would write it: exponents only where they help.
+pub(super) fn number(x: impl std::borrow::Borrow<f64>) -> String {
+    let x = *x.borrow();
+    let plain = x.abs() == 0.0 || (1e-4..1e7).contains(&x.abs()) || !x.is_finite();
+    if plain { format!("{x}") } else { format!("{x:e}") }
+}
+
+/// Given text in a message: control characters escaped, cut after 64 characters.
+pub(super) fn show(text: &str) -> String {
+    const LONGEST: usize = 64;
+    let escaped = |c: char| if matches!(c, '"' | '\'' | '\\') { vec![c] } else { c.escape_debug().collect() };
+    let mut out: String = text.chars().take(LONGEST).flat_map(escaped).collect();
+    if text.chars().nth(LONGEST).is_some() {
+        out.push('…');
+    }
+    out
+}
+
+/// Where a fault lies: the path of a key, and whether the key itself or its value is at fault.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Place {
+    pub(super) path: String,
+    pub(super) key: bool,
+}
+
+/// The faults found so far.
+#[derive(Debug, Default)]
+pub(super) struct Faults {
+    pub(super) list: Vec<(Place, Fault)>,
+    /// Faults that were not kept.
+    pub(super) dropped: usize,
+}
+
+/// Faults that are kept; a file of a million unknown keys needs no more.
+const KEPT: usize = 10_000;
+
+impl Faults {
+    /// A fault of the value at `path`; of the section header if there is no such value.
+    pub(super) fn value(&mut self, path: impl Into<String>, fault: Fault) {
+        self.push(Place { path: path.into(), key: false }, fault);
+    }
+
+    /// A fault of the key at `path`.
+    pub(super) fn key(&mut self, path: impl Into<String>, fault: Fault) {
+        self.push(Place { path: path.into(), key: true }, fault);
+    }
+
+    fn push(&mut self, place: Place, fault: Fault) {
+        if self.list.len() < KEPT {
+            self.list.push((place, fault));
+        } else {
+            self.dropped += 1;
+        }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.list.len()
+    }
+}

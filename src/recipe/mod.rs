@@ -1,0 +1,151 @@
+//! Recipes: TOML files that say which tables to bake. A recipe is read, checked whole and resolved into a [`Plan`].
+//!
+//! # The file
+//! ```toml
+//! name = "example"                 # required; a-z, 0-9 and `-`
+//! tolerance = 1e-4                 # optional; for tables that do not give their own
+//!
+//! [[table]]                        # 1 to 256 of them
+//! kind = "dfg"                     # required; an id of `list tables`
+//! name = "ggx-dfg"                 # required; stem of the file names, so unique and portable
+//! layout = "scale-bias"            # default: the first layout of the kind
+//! model = "ggx"                    # default: the kind's; an id or other name of `list models`
+//! params = { masking = "correlated" }   # numbers and words of model and kind; default: theirs
+//! tolerance = 1e-5                 # absolute, per channel; default: see below
+//! outputs = ["exr:half"]           # container:storage; default: ["exr:half"]
+//! on-miss = "fail"                 # or "report": a texel that misses the tolerance is counted, not an error
+//! reconstruction = "on"            # or "off": measure the reader's error between texels
+//!
+//! [[table.axis]]                   # first is x (fastest), second y, third z; none at all: the kind's defaults
+//! id = "mu"                        # required; a quantity: mu, roughness, alpha, eta, ...
+//! length = 64                      # required; texels
+//! domain = [0.0, 1.0]              # default: the whole domain of the quantity
+//! warp = "sqrt"                    # default: "linear"; see below
+//! texel = "endpoint"               # default; or "center"
+//! direction = "ascending"          # default; or "descending": texel 0 holds the high end
+//! offset = 0.0                     # default; shift in texels, for readers with an off-by-one
+//! clamp = [1e-4, 1.0]              # default: the domain; values are clamped to it before use
+//!
+//! [[table.axis]]
+//! id = "roughness"
+//! length = 64
+//! ```
+//! * **Warps**, on the domain normalised to v in [0, 1]: `"linear"`; `"sqrt"` = `{ power = 0.5 }`; `"square"` =
+//!   `{ power = 2 }`; `{ power = p }`, w = v^p; `"sqrt-one-minus"` = `{ one-minus-power = 0.5 }`;
+//!   `{ one-minus-power = p }`, w = 1 - (1 - v)^p; `{ coupled = "alpha", power = 2.0, scale = 1.0, exponent = 1.0 }`,
+//!   w^power = v (1 + c) / (v + c) with c = scale a^exponent and a the base value of the named axis. See
+//!   [`Warp`](crate::grid::Warp).
+//! * **Default tolerance**: half a step near 1 of the finest storage among the outputs: 2^-12 for half, 2^-25 for
+//!   float, 0.5/65535 for unorm16.
+//! * **Laws** that a table is known to break are waived by `waive = [{ law = "energy", reason = "..." }]`; the file
+//!   then says that it is not verified, with the reason. A law that the kind does not check cannot be waived.
+//!
+//! # Faults
+//! All faults of a file are reported at once, in file order, with line, column, key, what was given, what is allowed
+//! and a remedy. A file with syntax errors is checked for nothing else: what they leave of it cannot be trusted.
+//!
+//! # Canonical form
+//! [`PlannedTable::canonical`] is the table with every default filled in, under the keys of the file. Two recipes that
+//! mean the same have the same canonical form and the same hash, whatever their spelling. It is itself a recipe.
+//!
+//! ```
+//! let plan = brdfbake::recipe::parse(
+//!     r#"
+//!     name = "one"
+//!     [[table]]
+//!     kind = "dfg"
+//!     name = "ggx-dfg"
+//!     "#,
+//!     "one.toml",
+//! )?;
+//! assert_eq!(plan.tables[0].bound.spec.grid.len(), 64 * 64);
+//!
+//! let error = brdfbake::recipe::parse("nmae = 'one'", "one.toml").unwrap_err();
+//! assert!(error.to_string().contains("did you mean `name`?"));
+//! # Ok::<(), brdfbake::recipe::RecipeError>(())
+//! ```
+
+mod bind;
+mod canonical;
+mod diagnostic;
+mod document;
+mod fault;
+mod load;
+mod name;
+mod plan;
+mod preset;
+mod read_axis;
+mod section;
+mod span;
+
+pub use diagnostic::{Diagnostic, RecipeError};
+pub use fault::Fault;
+pub use load::{LoadError, load};
+pub use plan::{Output, Plan, PlanError, PlannedTable, TableRequest};
+pub use preset::{PRESETS, Preset, preset};
+
+use crate::encode::{ENCODERS, Storage};
+use std::sync::LazyLock;
+
+/// Most bytes of a recipe file.
+pub const MAX_BYTES: usize = 1 << 20;
+/// Most tables of a recipe.
+pub const MAX_TABLES: usize = 256;
+/// Tolerances that can be asked for. Sums in f64 reach about 1e-13; nothing coarser than a tenth is a table.
+pub const TOLERANCE: [f64; 2] = [1e-12, 0.1];
+
+/// A container and what it can store.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Format {
+    /// Container id: `exr`.
+    pub container: &'static str,
+    /// Its storages.
+    pub storages: Vec<Stored>,
+}
+
+/// A storage.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stored {
+    /// Storage id: `half`.
+    pub id: &'static str,
+    /// Half a step near 1: the default tolerance.
+    pub half_step: f64,
+    /// True if it spreads its steps over the range of the channel.
+    pub bounded: bool,
+}
+
+/// The containers and storages that a recipe can name: those of the registry of encoders.
+#[must_use]
+pub fn formats() -> &'static [Format] {
+    static FORMATS: LazyLock<Vec<Format>> = LazyLock::new(|| {
+        let stored =
+            |s: &Storage| Stored { id: s.id(), half_step: s.default_tolerance(), bounded: s.is_bounded() };
+        ENCODERS
+            .iter()
+            .map(|e| Format { container: e.id(), storages: e.storages().iter().map(stored).collect() })
+            .collect()
+    });
+    &FORMATS
+}
+
+/// Reads a recipe. `file_name` is used in messages only.
+///
+/// # Errors
+/// [`RecipeError`] with every fault of the text.
+pub fn parse(source: &str, file_name: &str) -> Result<Plan, RecipeError> {
+    let source = source.strip_prefix('\u{feff}').unwrap_or(source);
+    if source.len() > MAX_BYTES {
+        let fault = Fault::FileTooLarge { bytes: source.len(), limit: MAX_BYTES };
+        return Err(RecipeError::of_file(file_name, fault));
+    }
+    let (root, errors) = toml::de::DeTable::parse_recoverable(source);
+    if !errors.is_empty() {
+        return Err(diagnostic::syntax(source, file_name, &errors));
+    }
+    let mut faults = fault::Faults::default();
+    let document = document::read(root.get_ref(), &mut faults);
+    match plan::resolve(document, &mut faults) {
+        Some(plan) if faults.is_empty() => Ok(plan),
+        _ => Err(diagnostic::locate(source, file_name, &span::Spans::of(&root), faults)),
+    }
+}

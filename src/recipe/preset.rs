@@ -1,0 +1,60 @@
+//! Recipes that come with the program: the files of `presets/`.
+
+use super::{Plan, RecipeError, parse};
+
+/// A recipe that comes with the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Preset {
+    /// Id: the file name without `.toml`, and the name in the file.
+    pub id: &'static str,
+    /// Who needs it.
+    pub doc: &'static str,
+    /// The text of the file.
+    pub source: &'static str,
+}
+
+macro_rules! preset {
+    ($id:literal, $doc:literal) => {
+        Preset { id: $id, doc: $doc, source: include_str!(concat!("../../presets/", $id, ".toml")) }
+    };
+}
+
+/// Every preset; the first is what `bake` takes if no recipe is given.
+pub static PRESETS: &[Preset] = &[
+    preset!("default", "a first look: one table of each kind, on the axes that converge best"),
+    preset!(
+        "split-sum",
+        "image-based lighting with the axes that most engines read: 128 x 128, linear, texel centres"
+    ),
+    preset!(
+        "split-sum-compact",
+        "the same integrals in 32 x 32 texels, for a shader that can take a square root"
+    ),
+    preset!("engines", "drop-in replacements of the tables that Bevy, Filament and three.js ship"),
+    preset!(
+        "energy-compensation",
+        "directional and average albedo of white GGX and Beckmann, for multiple scattering"
+    ),
+    preset!("fresnel", "dielectric Fresnel reflectance from both sides, for water, glass and skin"),
+    preset!(
+        "ggx",
+        "split sum, directional and average albedo of GGX: what `bake --scene` bakes for glTF materials"
+    ),
+    preset!("kelemen-skin", "the Beckmann texture of the skin shader of GPU Gems 3, chapter 14"),
+];
+
+/// Finds a preset by its id.
+#[must_use]
+pub fn preset(id: &str) -> Option<&'static Preset> {
+    PRESETS.iter().find(|p| p.id == id)
+}
+
+impl Preset {
+    /// Resolves it.
+    ///
+    /// # Errors
+    /// None for the presets in [`PRESETS`]: a test parses them all.
+    pub fn plan(&self) -> Result<Plan, RecipeError> {
+        parse(self.source, &format!("presets/{}.toml", self.id))
+    }
+}

@@ -1,0 +1,123 @@
+//! `[[table.axis]]` to an [`Axis`]. Ranges are checked later, by the axis itself.
+
+use super::fault::{Fault, Faults};
+use super::section::{Section, as_number, unknown_word, wrong};
+use crate::grid::quantity::QUANTITIES;
+use crate::grid::{Axis, Direction, Quantity, Texel, Warp};
+use toml::de::{DeTable, DeValue};
+
+const KEYS: &[&str] = &["id", "length", "domain", "warp", "texel", "direction", "offset", "clamp"];
+/// Warps that have a name.
+const WORDS: &[(&str, Warp)] = &[
+    ("linear", Warp::Linear),
+    ("sqrt", Warp::Power(0.5)),
+    ("square", Warp::Power(2.0)),
+    ("sqrt-one-minus", Warp::OneMinusPower(0.5)),
+];
+
+/// Reads an axis; none if its quantity or its length cannot be read.
+pub(super) fn read(table: &DeTable<'_>, path: &str, faults: &mut Faults) -> Option<Axis> {
+    let section = Section::new(table, path, "[[table.axis]]", KEYS, faults);
+    section.require("id", "id = \"mu\"", faults);
+    section.require("length", "length = 64", faults);
+    let quantity = section.text("id", faults).and_then(|id| {
+        let found = Quantity::find(&id);
+        if found.is_none() {
+            faults.value(section.path("id"), unknown_word("quantity", &id, QUANTITIES.iter().map(|q| q.id)));
+        }
+        found
+    });
+    let length = section.count("length", faults);
+    let texels = [("center", Texel::Center), ("endpoint", Texel::Endpoint)];
+    let texel = section.word("texel", &texels, faults).unwrap_or(Texel::Endpoint);
+    let directions = [("ascending", Direction::Ascending), ("descending", Direction::Descending)];
+    let direction = section.word("direction", &directions, faults);
+    let domain = section.pair("domain", faults);
+    let clamp = section.pair("clamp", faults);
+    let offset = section.number("offset", faults);
+    let warp = warp(&section, faults);
+    let mut axis = Axis::new(quantity?, length?, texel);
+    axis.domain = domain.unwrap_or(axis.domain);
+    axis.direction = direction.unwrap_or(axis.direction);
+    axis.offset = offset.unwrap_or(axis.offset);
+    axis.warp = warp.unwrap_or(axis.warp);
+    axis.clamp = clamp;
+    Some(axis)
+}
+
+fn warp(section: &Section<'_>, faults: &mut Faults) -> Option<Warp> {
+    match section.get("warp")? {
+        DeValue::String(word) => {
+            let found = WORDS.iter().find(|(w, _)| w == word).map(|(_, warp)| warp.clone());
+            if found.is_none() {
+                let words = WORDS.iter().map(|(w, _)| *w);
+                faults.value(section.path("warp"), unknown_word("warp", word, words));
+            }
+            found
+        }
+        DeValue::Table(table) => warp_table(table, &section.path("warp"), faults),
+        other => {
+            faults.value(section.path("warp"), wrong("warp", other, "a word in quotes, or a table { ... }"));
+            None
+        }
+    }
+}
+
+fn warp_table(table: &DeTable<'_>, path: &str, faults: &mut Faults) -> Option<Warp> {
+    let coupled = table.contains_key("coupled");
+    let keys: &[&str] = if coupled {
+        &["coupled", "power", "scale", "exponent"]
+    } else {
+        &["power", "one-minus-power", "coupled"]
+    };
+    let section = Section::new(table, path, "warp", keys, faults);
+    if coupled {
+        let to = section.text("coupled", faults);
+        let mut number = |key, default| match section.get(key) {
+            None => Some(default),
+            Some(_) => section.number(key, faults),
+        };
+        let (power, scale, exponent) = (number("power", 2.0), number("scale", 1.0), number("exponent", 1.0));
+        let to = to?;
+        if let Some(q) = Quantity::find(&to).filter(|q| q.base.is_some()) {
+            let words = std::iter::once(q.base_id());
+            faults.value(section.path("coupled"), unknown_word("base quantity", &to, words));
+            return None;
+        }
+        return Some(Warp::Coupled { to, power: power?, scale: scale?, exponent: exponent? });
+    }
+    let why = match (table.get("power"), table.get("one-minus-power")) {
+        (Some(_), None) => return section.number("power", faults).map(Warp::Power),
+        (None, Some(_)) => return section.number("one-minus-power", faults).map(Warp::OneMinusPower),
+        (Some(_), Some(_)) => "it has both `power` and `one-minus-power`",
+        (None, None) => "it has none of `power`, `one-minus-power`, `coupled`",
+    };
+    faults.value(path, Fault::WarpForm { why });
+    None
+}
+
+/// The axis in its one canonical form: equal maps are equal values.
+pub(super) fn canonical(mut axis: Axis) -> Axis {
+    let is = |a: f64, b: f64| (a - b).abs() == 0.0;
+    if let Warp::Power(p) | Warp::OneMinusPower(p) = axis.warp
+        && is(p, 1.0)
+    {
+        axis.warp = Warp::Linear;
+    }
+    if axis.clamp.is_some_and(|[a, b]| is(a, axis.domain[0]) && is(b, axis.domain[1])) {
+        axis.clamp = None;
+    }
+    // -0 and 0 are the same place
+    axis.offset += 0.0;
+    axis.domain = axis.domain.map(|v| v + 0.0);
+    axis.clamp = axis.clamp.map(|c| c.map(|v| v + 0.0));
+    axis
+}
+
+/// A value of `params`: a number or a word, as JSON.
+pub(super) fn param(value: &DeValue<'_>) -> Option<serde_json::Value> {
+    match value {
+        DeValue::String(s) => Some(serde_json::Value::from(s.as_ref())),
+        _ => as_number(value).filter(|v| v.is_finite()).map(serde_json::Value::from),
+    }
+}

@@ -1,0 +1,229 @@
+//! One section of a recipe file: its known keys, read by type. A value of the wrong type is a fault and reads as none.
+
+use super::fault::{Fault, Faults, show};
+use super::span::join;
+use crate::math::nearest::nearest;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Most characters of a text.
+pub(super) const LONGEST_TEXT: usize = 1000;
+
+/// A TOML table with the keys that it may have.
+#[derive(Debug)]
+pub(super) struct Section<'a> {
+    table: &'a DeTable<'a>,
+    path: String,
+    /// As written in the file: `[[table.axis]]`.
+    name: &'static str,
+}
+
+impl<'a> Section<'a> {
+    /// Takes a table and reports the keys that it should not have.
+    pub(super) fn new(
+        table: &'a DeTable<'a>,
+        path: &str,
+        name: &'static str,
+        keys: &[&str],
+        faults: &mut Faults,
+    ) -> Section<'a> {
+        for key in table.keys().map(Spanned::get_ref).filter(|k| !keys.contains(&k.as_ref())) {
+            let fault = Fault::UnknownKey {
+                key: show(key),
+                section: name,
+                allowed: keys.join(", "),
+                suggestion: slip(key, keys.iter().copied()),
+            };
+            faults.key(join(path, key), fault);
+        }
+        Section { table, path: path.to_owned(), name }
+    }
+
+    /// Path of a key.
+    pub(super) fn path(&self, key: &str) -> String {
+        join(&self.path, key)
+    }
+
+    /// The value of a key.
+    pub(super) fn get(&self, key: &str) -> Option<&'a DeValue<'a>> {
+        self.table.get(key).map(Spanned::get_ref)
+    }
+
+    /// Reports a key that is not there.
+    pub(super) fn require(&self, key: &'static str, example: &'static str, faults: &mut Faults) {
+        if self.get(key).is_none() {
+            faults.value(self.path.clone(), Fault::MissingKey { section: self.name, key, example });
+        }
+    }
+
+    /// A text of 1 to [`LONGEST_TEXT`] characters.
+    pub(super) fn text(&self, key: &'static str, faults: &mut Faults) -> Option<String> {
+        let value = self.get(key)?;
+        let Some(text) = value.as_str() else {
+            faults.value(self.path(key), wrong(key, value, "a string"));
+            return None;
+        };
+        let got = text.trim().chars().count();
+        if got == 0 || got > LONGEST_TEXT {
+            faults.value(self.path(key), Fault::TextLength { key: key.to_owned(), got, limit: LONGEST_TEXT });
+            return None;
+        }
+        Some(text.to_owned())
+    }
+
+    /// A number, written as integer or float.
+    pub(super) fn number(&self, key: &'static str, faults: &mut Faults) -> Option<f64> {
+        let value = self.get(key)?;
+        let number = as_number(value);
+        if number.is_none() {
+            faults.value(self.path(key), wrong(key, value, "a number"));
+        }
+        number
+    }
+
+    /// Two numbers.
+    pub(super) fn pair(&self, key: &'static str, faults: &mut Faults) -> Option<[f64; 2]> {
+        let items = self.list(key, "two numbers, such as [0.0, 1.0]", faults)?;
+        if items.len() != 2 {
+            let allowed = "two numbers, such as [0.0, 1.0]".to_owned();
+            faults.value(self.path(key), Fault::Count { key, got: items.len(), allowed });
+            return None;
+        }
+        let mut pair = [None; 2];
+        for (i, (slot, item)) in pair.iter_mut().zip(items).enumerate() {
+            *slot = as_number(item.get_ref());
+            if slot.is_none() {
+                let entry = format!("{key}[{i}]");
+                faults.value(self.path(key) + &entry[key.len()..], wrong(&entry, item.get_ref(), "a number"));
+            }
+        }
+        Some([pair[0]?, pair[1]?])
+    }
+
+    /// A count; its upper limit is the business of whoever asked.
+    pub(super) fn count(&self, key: &'static str, faults: &mut Faults) -> Option<usize> {
+        let value = self.get(key)?;
+        let Some(integer) = value.as_integer() else {
+            faults.value(self.path(key), wrong(key, value, "an integer"));
+            return None;
+        };
+        let count = usize::from_str_radix(integer.as_str(), integer.radix()).ok();
+        if count.is_none() {
+            let got = as_number(value).unwrap_or(f64::INFINITY);
+            faults.value(self.path(key), Fault::Range { key: key.to_owned(), got, min: 1.0, max: 16384.0 });
+        }
+        count
+    }
+
+    /// One of a few words.
+    pub(super) fn word<T: Copy>(
+        &self,
+        key: &'static str,
+        words: &[(&'static str, T)],
+        faults: &mut Faults,
+    ) -> Option<T> {
+        let value = self.get(key)?;
+        let Some(got) = value.as_str() else {
+            faults.value(self.path(key), wrong(key, value, "a word in quotes"));
+            return None;
+        };
+        let found = words.iter().find(|(w, _)| *w == got).map(|(_, t)| *t);
+        if found.is_none() {
+            faults.value(self.path(key), unknown_word(key, got, words.iter().map(|(w, _)| *w)));
+        }
+        found
+    }
+
+    /// A list.
+    pub(super) fn list(
+        &self,
+        key: &'static str,
+        expected: &'static str,
+        faults: &mut Faults,
+    ) -> Option<&'a [Spanned<DeValue<'a>>]> {
+        let value = self.get(key)?;
+        let list = value.as_array();
+        if list.is_none() {
+            faults.value(self.path(key), wrong(key, value, expected));
+        }
+        list.map(|l| &**l)
+    }
+
+    /// A list of tables with their paths. An entry that is no table is a fault and left out.
+    pub(super) fn tables(
+        &self,
+        key: &'static str,
+        expected: &'static str,
+        faults: &mut Faults,
+    ) -> Option<Vec<(String, &'a DeTable<'a>)>> {
+        let mut tables = Vec::new();
+        for (i, item) in self.list(key, expected, faults)?.iter().enumerate() {
+            let path = format!("{}[{i}]", self.path(key));
+            match item.get_ref().as_table() {
+                Some(table) => tables.push((path, table)),
+                None => faults.value(path, wrong(key, item.get_ref(), "a table")),
+            }
+        }
+        Some(tables)
+    }
+}
+
+/// A number of either type. An integer beyond i64 is still a number.
+pub(super) fn as_number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Float(f) => f.as_str().parse().ok(),
+        DeValue::Integer(i) if i.radix() == 10 => i.as_str().parse().ok(),
+        // a hexadecimal beyond u32 has no use as a number of a recipe
+        DeValue::Integer(i) => u32::from_str_radix(i.as_str(), i.radix()).ok().map(f64::from),
+        _ => None,
+    }
+}
+
+/// A value of the wrong type.
+pub(super) fn wrong(key: &str, value: &DeValue<'_>, expected: &'static str) -> Fault {
+    let remedy = match (value, expected) {
+        (DeValue::String(s), "a number") if s.trim().parse::<f64>().is_ok() => Some("leave the quotes out"),
+        (DeValue::Float(_), "an integer") => Some("write it without a decimal point"),
+        (DeValue::Table(_), "[[table]]") => Some("write [[table]], with double brackets"),
+        (DeValue::Table(_), "[[table.axis]]") => Some("write [[table.axis]], with double brackets"),
+        (DeValue::Boolean(true), _) if key == "reconstruction" => Some("write \"on\""),
+        (DeValue::Boolean(false), _) if key == "reconstruction" => Some("write \"off\""),
+        _ => None,
+    };
+    let got = match value {
+        DeValue::Table(_) if expected.starts_with("[[") => "a single table",
+        DeValue::Float(_) if as_number(value).is_none_or(|v| !v.is_finite()) => "not finite",
+        _ => type_name(value),
+    };
+    Fault::Type { key: key.to_owned(), got, expected, remedy }
+}
+
+fn type_name(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(_) => "a string",
+        DeValue::Integer(_) => "an integer",
+        DeValue::Float(_) => "a float",
+        DeValue::Boolean(_) => "a boolean",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a table",
+    }
+}
+
+/// A word that is not among those offered.
+pub(super) fn unknown_word<'a>(what: &str, got: &str, words: impl Iterator<Item = &'a str> + Clone) -> Fault {
+    Fault::Word {
+        what: what.to_owned(),
+        got: show(got),
+        allowed: words.clone().collect::<Vec<_>>().join(", "),
+        suggestion: slip(got, words),
+    }
+}
+
+/// The nearest word, if `got` is short enough to be a slip of one.
+fn slip<'a>(got: &str, words: impl Iterator<Item = &'a str>) -> Option<String> {
+    if got.len() > 64 {
+        return None;
+    }
+    nearest(got, words).map(str::to_owned)
+}

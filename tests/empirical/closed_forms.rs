@@ -1,0 +1,1 @@
+//! Closed forms and limits that are not in the code.

@@ -1,0 +1,45 @@
+//! Every folder of `out-examples/` is what its `command.txt` makes today. `cargo bless` makes them anew.
+#![allow(clippy::unwrap_used, reason = "test")]
+
+use brdfbake::encode::Tolerance;
+use brdfbake::encode::diff_files;
+use std::path::Path;
+use std::process::Command;
+
+const OWN: [&str; 2] = ["command.txt", "recipe.toml"];
+
+#[test]
+fn examples_are_what_their_commands_make() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut count = 0;
+    for entry in std::fs::read_dir(root.join("out-examples")).unwrap() {
+        let folder = entry.unwrap().path();
+        let command = std::fs::read_to_string(folder.join("command.txt")).unwrap();
+        let mut words: Vec<&str> = command.split_whitespace().collect();
+        assert_eq!(words.remove(0), "brdfbake");
+        let target = words.pop().unwrap();
+        assert!(target.ends_with(folder.file_name().unwrap().to_str().unwrap()), "{command}");
+        let fresh = tempfile::tempdir().unwrap();
+        let bless = std::env::var_os("BLESS").is_some();
+        let out = if bless { folder.clone() } else { fresh.path().to_path_buf() };
+        let status = Command::new(env!("CARGO_BIN_EXE_brdfbake"))
+            .args(words)
+            .arg(&out)
+            .arg("--quiet")
+            .current_dir(root)
+            .status()
+            .unwrap();
+        assert!(status.success(), "{command}");
+        if !bless {
+            for own in OWN.iter().filter(|f| folder.join(f).exists()) {
+                std::fs::copy(folder.join(own), fresh.path().join(own)).unwrap();
+            }
+            // bit for bit, metadata included
+            let diff =
+                diff_files::folders(&folder, fresh.path(), Tolerance { absolute: 0.0, ulps: 0.0 }).unwrap();
+            assert!(diff.equal(), "{}: {diff:#?}", folder.display());
+        }
+        count += 1;
+    }
+    assert!(count >= 5);
+}

@@ -1,0 +1,117 @@
+//! Two recipes that mean the same have the same hash; two that do not, have not. The canonical form is a recipe.
+
+use brdfbake::recipe::{PRESETS, Plan, parse};
+
+fn plan(source: &str) -> Plan {
+    parse(source, "x.toml").unwrap_or_else(|e| panic!("{e}"))
+}
+
+const SHORT: &str = "name = 'x'\n[[table]]\nkind = 'dfg'\nname = 'a'\n";
+
+/// The same with everything spelled out, other key order, other spellings of numbers and warps.
+const LONG: &str = r#"
+table = [{ name = "a", axis = [
+    { length = 0x40, id = "mu", warp = { power = 5e-1 }, domain = [0, 1], clamp = [-0.0, 1], offset = -0.0 },
+    { id = "roughness", length = 64, warp = { one-minus-power = 1 }, texel = "endpoint", direction = "ascending" },
+], waive = [], outputs = ["exr:half"], "on-miss" = "fail", reconstruction = "on", tolerance = 0.000244140625,
+   params = { masking = "correlated", F90 = 1 }, model = "ggx_smith_correlated", layout = "scale-bias", kind = "dfg" }]
+name = "x"
+"#;
+
+#[test]
+fn spelling_does_not_matter() {
+    let (short, long) = (plan(SHORT), plan(LONG));
+    assert_eq!(short.canonical.to_string(), long.canonical.to_string());
+    assert_eq!(short.tables[0].hash, long.tables[0].hash);
+    assert_eq!(short.hash, long.hash);
+    assert_eq!(short.hash.len(), 64);
+    let axis = &long.tables[0].bound.spec.grid.axes()[1];
+    assert_eq!(axis.coordinate_formula(), "((roughness) * 63 + 0.5) / 64");
+    assert_eq!(axis, &short.tables[0].bound.spec.grid.axes()[1]);
+}
+
+#[test]
+fn a_tolerance_of_the_recipe_is_that_of_its_tables() {
+    let of_recipe = plan("name = 'x'\ntolerance = 1e-6\n[[table]]\nkind = 'dfg'\nname = 'a'\n");
+    let of_table = plan("name = 'x'\n[[table]]\nkind = 'dfg'\nname = 'a'\ntolerance = 1e-6\n");
+    assert_eq!(of_recipe.hash, of_table.hash);
+    assert_ne!(of_recipe.hash, plan(SHORT).hash);
+}
+
+#[test]
+fn every_difference_of_meaning_changes_the_hash() {
+    let table = |more: &str| format!("name = 'x'\n[[table]]\nkind = 'albedo'\nname = 'a'\n{more}\n");
+    let axis = |more: &str| {
+        table(&format!(
+            "[[table.axis]]\nid = 'mu'\nlength = 8\n{more}\n[[table.axis]]\nid = 'roughness'\nlength = 8"
+        ))
+    };
+    let sources = [
+        table(""),
+        table("model = 'beckmann'"),
+        table("params = { f0 = 0.5 }"),
+        table("params = { masking = 'separable' }"),
+        table("tolerance = 1e-5"),
+        table("outputs = ['exr:float']\ntolerance = 0.000244140625"),
+        table("outputs = ['exr:half', 'png:unorm16']\ntolerance = 0.000244140625"),
+        table("on-miss = 'report'"),
+        table("reconstruction = 'off'"),
+        table("waive = [{ law = 'energy', reason = 'one' }]"),
+        table("waive = [{ law = 'energy', reason = 'two' }]"),
+        axis(""),
+        axis("domain = [0.5, 1]"),
+        axis("clamp = [0.5, 1]"),
+        axis("warp = 'sqrt'"),
+        axis("warp = 'square'"),
+        axis("warp = 'sqrt-one-minus'"),
+        axis("warp = { coupled = 'alpha' }"),
+        axis("warp = { coupled = 'alpha', scale = 2 }"),
+        axis("warp = { coupled = 'alpha', exponent = 2 }"),
+        axis("texel = 'center'"),
+        axis("direction = 'descending'"),
+        axis("offset = 1"),
+        axis("").replacen("length = 8", "length = 9", 1),
+        axis("").replace("roughness", "alpha"),
+    ];
+    let mut hashes: Vec<String> = sources.iter().map(|s| plan(s).tables[0].hash.clone()).collect();
+    hashes.push(plan(&table("").replace("name = 'a'", "name = 'b'")).tables[0].hash.clone());
+    let all = hashes.len();
+    hashes.sort();
+    hashes.dedup();
+    assert_eq!(hashes.len(), all);
+}
+
+#[test]
+fn the_name_of_a_recipe_is_in_its_own_hash_only() {
+    let (x, y) = (plan(SHORT), plan(&SHORT.replace("'x'", "'y'")));
+    assert_ne!(x.hash, y.hash);
+    assert_eq!(x.tables[0].hash, y.tables[0].hash);
+}
+
+#[test]
+fn the_canonical_form_is_a_recipe_that_means_the_same() {
+    let waived = "name = 'w'\n[[table]]\nkind = 'albedo'\nname = 'a'\nmodel = 'cook-torrance-1982'\n\
+                  waive = [{ law = 'range', reason = 'r' }, { law = 'energy', reason = ' e ' }]\n";
+    for source in PRESETS.iter().map(|p| p.source).chain([SHORT, LONG, waived]) {
+        let first = plan(source);
+        let text = toml::to_string(&first.canonical).unwrap();
+        let second = plan(&text);
+        assert_eq!(first.canonical.to_string(), second.canonical.to_string());
+        assert_eq!(first.hash, second.hash);
+    }
+}
+
+#[test]
+fn waivers_and_outputs_have_no_order() {
+    let source = |waive: &str, outputs: &str| {
+        format!(
+            "name = 'w'\n[[table]]\nkind = 'albedo'\nname = 'a'\nwaive = [{waive}]\noutputs = [{outputs}]\n"
+        )
+    };
+    let (a, b) = ("{ law = 'range', reason = 'r' }", "{ law = 'energy', reason = 'e' }");
+    let first = plan(&source(&format!("{a}, {b}"), "'exr:half', 'png:unorm16'"));
+    let second = plan(&source(&format!("{b}, {a}"), "'png:unorm16', 'exr:half'"));
+    assert_eq!(first.hash, second.hash);
+    let laws: Vec<&str> = first.tables[0].waivers.iter().map(|w| w.law.as_str()).collect();
+    assert_eq!(laws, ["range", "energy"]);
+}

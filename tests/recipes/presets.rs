@@ -1,0 +1,81 @@
+//! The presets are the files of `presets/`; each parses, binds and is named as its file.
+
+use brdfbake::recipe::{PRESETS, preset};
+use brdfbake::tables::driver::{Options, bake};
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+#[test]
+fn presets_are_the_files_of_the_folder() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
+    let files: BTreeSet<String> =
+        std::fs::read_dir(&folder).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
+    let listed: BTreeSet<String> = PRESETS.iter().map(|p| format!("{}.toml", p.id)).collect();
+    assert_eq!(files, listed);
+    for p in PRESETS {
+        assert_eq!(std::fs::read_to_string(folder.join(format!("{}.toml", p.id))).unwrap(), p.source);
+    }
+}
+
+#[test]
+fn every_preset_resolves() {
+    for p in PRESETS {
+        let plan = p.plan().unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(plan.name, p.id);
+        assert!(plan.tables.iter().all(|t| t.waivers.is_empty()), "{}: a preset breaks no law", p.id);
+        assert!(p.source.starts_with("# "), "{}: the first line says who needs it", p.id);
+    }
+    assert_eq!(PRESETS[0].id, "default");
+    assert!(preset("default").is_some() && preset("nothing").is_none());
+}
+
+#[test]
+fn default_tolerances_follow_the_finest_storage() {
+    let tolerance = |id: &str, table: &str| {
+        let plan = preset(id).unwrap().plan().unwrap();
+        plan.tables.iter().find(|t| t.name == table).unwrap().tolerance.to_bits()
+    };
+    assert_eq!(tolerance("default", "ggx-dfg"), f64::to_bits(0.000_244_140_625));
+    assert_eq!(tolerance("default", "kelemen-beckmann"), f64::to_bits(0.5 / 65535.0));
+    assert_eq!(tolerance("fresnel", "fresnel-both-sides"), f64::to_bits(2.980_232_238_769_531_25e-8));
+    assert_eq!(tolerance("energy-compensation", "ggx-e"), f64::to_bits(1e-6));
+}
+
+/// White directional albedo of GGX with correlated masking at (mu, alpha): high-precision reference values, from two
+/// quadratures that agree to 12 decimals.
+const E: &[(f64, f64, f64)] = &[
+    (0.05, 0.01, 0.976207590052),
+    (0.05, 0.05, 0.889894054271),
+    (0.05, 0.5, 0.912547797965),
+    (0.1, 0.05, 0.911346937308),
+    (0.1, 0.1, 0.883455001867),
+    (0.1, 1.0, 0.760210472720),
+    (0.25, 0.1, 0.921623156958),
+    (0.25, 0.25, 0.840081899154),
+    (0.5, 0.01, 0.999742122599),
+    (0.5, 0.5, 0.698250696928),
+    (0.75, 0.75, 0.501411121497),
+    (1.0, 0.25, 0.915812430250),
+    (1.0, 1.0, 0.306852819440),
+];
+
+#[test]
+fn the_albedo_of_the_default_preset_is_read_as_well_as_its_comment_says() {
+    let plan = preset("default").unwrap().plan().unwrap();
+    let planned = plan.tables.iter().find(|t| t.name == "ggx-albedo").unwrap();
+    let cancel = AtomicBool::new(false);
+    let options = Options {
+        tolerance: planned.tolerance,
+        on_miss: planned.on_miss,
+        cancel: &cancel,
+        progress: &|_| {},
+    };
+    let table = bake(&planned.bound, options).unwrap();
+    for &(mu, alpha, expected) in E {
+        let mut got = [0.0];
+        table.read(&table.grid.point(&[mu, alpha]).unwrap(), &mut got);
+        let error = (got[0] - expected).abs();
+        assert!(error < 3.1e-4, "E({mu}, {alpha}) = {} is off by {error:e}", got[0]);
+    }
+}
