@@ -156,10 +156,13 @@ fn mitsuba_agrees_point_by_point() {
     assert!(count > 1000, "{count}");
 }
 
+/// File, model of a roughness, bound.
+type Furnace = (&'static str, &'static dyn Fn(f64) -> (&'static str, Json), f64);
+
 #[test]
 fn cycles_agrees_in_white_furnaces() {
     let Some(shared) = common::shared() else { return };
-    let cases: [(&str, &dyn Fn(f64) -> (&'static str, Json), f64); 7] = [
+    let cases: [Furnace; 7] = [
         ("glossy_ggx", &|r| ("ggx", json!({ "alpha": r * r })), 3e-4),
         ("glossy_beckmann", &|r| ("beckmann", json!({ "alpha": r * r })), 5e-4),
         ("glossy_ggx_color0.5", &|r| ("ggx", json!({ "alpha": r * r, "f0": 0.5, "f90": 0.5 })), 3e-4),
