@@ -35,6 +35,7 @@ pub mod ggx_dielectric;
 pub mod ggx_glass;
 pub mod ggx_schlick_masking;
 pub mod glass;
+pub mod gltf;
 pub mod gtr;
 pub mod kelemen;
 pub mod kelemen_matte;
@@ -120,6 +121,7 @@ pub static MODELS: &[&ModelInfo] = &[
     &kelemen_matte::INFO,
     &kelemen_skin::INFO,
     &disney_clearcoat::INFO,
+    &gltf::INFO,
     &charlie::INFO,
     &charlie_neubelt::INFO,
     &velvet_ashikhmin::INFO,
