@@ -1,4 +1,4 @@
-//! `brdfbake albedo MODEL --param k=v --mu 0.1,0.5 --tolerance 1e-8`.
+//! `brdfbake albedo MODEL --param k=v --mu 0.1,0.5 --tolerance 1e-8`: E, and T of models that transmit.
 
 use super::{Exit, Failure, output};
 use crate::integrate::View;
@@ -47,7 +47,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let mut text = String::new();
     let mut missed = false;
     if !args.json {
-        text.push_str("mu\tE\terror\tevaluations\n");
+        let through = if model.transmission().is_some() { "\tT\terror of T" } else { "" };
+        text.push_str(&format!("mu\tE\terror\tevaluations{through}\n"));
     }
     for &mu in &args.mu {
         if !(0.0..=1.0).contains(&mu) {
@@ -60,14 +61,24 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
             if args.chart { &[Functional::One, Functional::One] } else { &[Functional::One] };
         let e = integrate(&*model, View { mu, phi: args.phi }, functionals, args.tolerance)
             .map_err(|e| Failure::new(Exit::Unsupported, format!("{}: mu = {mu}: {e}", info.id)))?;
-        missed |= e.error[0] > args.tolerance;
+        let through = model.transmission().and_then(|t| t.albedo(mu, args.tolerance));
+        let through = through.map(|t| (t.value[0], t.error[0]));
+        missed |= e.error[0] > args.tolerance || through.is_some_and(|t| t.1 > args.tolerance);
         if args.json {
-            let line = serde_json::json!({
+            let mut line = serde_json::json!({
                 "model": info.id, "mu": mu, "e": e.value[0], "error": e.error[0], "evaluations": e.evaluations,
             });
+            if let Some((t, error)) = through {
+                line["t"] = t.into();
+                line["t_error"] = error.into();
+            }
             text.push_str(&format!("{line}\n"));
         } else {
-            text.push_str(&format!("{mu}\t{:.15}\t{:.1e}\t{}\n", e.value[0], e.error[0], e.evaluations));
+            let through = through.map_or_else(String::new, |(t, error)| format!("\t{t:.15}\t{error:.1e}"));
+            text.push_str(&format!(
+                "{mu}\t{:.15}\t{:.1e}\t{}{through}\n",
+                e.value[0], e.error[0], e.evaluations
+            ));
         }
     }
     output::data(&text);

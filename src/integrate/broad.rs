@@ -42,7 +42,7 @@ pub fn visit(mu_o: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
 }
 
 /// Nodes in (0, 1) as `(s, 1 - s, weight)`, about 4 a level.
-fn double_exponential(level: f64, mut add: impl FnMut(f64, f64, f64)) {
+pub(super) fn double_exponential(level: f64, mut add: impl FnMut(f64, f64, f64)) {
     let half = half_count(level);
     let step = END / f64::from(half);
     for i in -half..=half {

@@ -8,6 +8,7 @@ pub mod adaptive;
 pub mod broad;
 pub mod chart;
 pub mod ellipse;
+pub mod facet;
 pub mod fibre;
 pub mod gauss;
 pub mod graded;

@@ -4,7 +4,7 @@
 //! the roughness: each panel sees every singularity at a distance of its own length, so a fixed degree serves all.
 
 use super::Brdf;
-use crate::integrate::{BATCH, Estimate, MAX_CHANNELS, Nodes, Sums, gauss, ladder};
+use crate::integrate::{BATCH, Estimate, MAX_CHANNELS, Nodes, Sums, adaptive, gauss, ladder};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex};
@@ -29,18 +29,27 @@ pub struct AlbedoCurve {
     error: f64,
 }
 
-/// The directional albedo at a view cosine: the mirror's, the reduction's, or the chart's. `None` without a chart.
+/// The directional albedo at a view cosine: of parts, of a mirror, by a reduction, in a chart, or by subdivision.
 #[must_use]
-pub fn directional_albedo(model: &dyn Brdf, mu_o: f64, tolerance: f64) -> Option<Estimate> {
+pub fn directional_albedo(model: &dyn Brdf, mu_o: f64, tolerance: f64) -> Estimate {
+    if let Some(parts) = model.parts() {
+        let mut total = Estimate { value: [0.0; MAX_CHANNELS], error: [0.0; MAX_CHANNELS], evaluations: 0 };
+        for (weight, part) in parts.into_iter().filter(|(weight, _)| *weight > 0.0) {
+            let e = directional_albedo(part, mu_o, tolerance / weight);
+            total.value[0] += weight * e.value[0];
+            total.error[0] += weight * e.error[0];
+            total.evaluations = total.evaluations.saturating_add(e.evaluations);
+        }
+        return total;
+    }
     if let Some(e) = model.mirror(mu_o) {
         let mut value = [0.0; MAX_CHANNELS];
         value[0] = e;
-        return Some(Estimate::exact(value));
+        return Estimate::exact(value);
     }
     if let Some(e) = model.reduced_albedo(mu_o, tolerance) {
-        return Some(e);
+        return e;
     }
-    let chart = model.chart()?;
     let mut values = [0.0; BATCH];
     let mut add = |nodes: &Nodes, sums: &mut Sums| {
         model.eval_nodes(nodes, &mut values);
@@ -48,7 +57,10 @@ pub fn directional_albedo(model: &dyn Brdf, mu_o: f64, tolerance: f64) -> Option
             sums[0] += f * (nodes.weight[i] * nodes.mu_i[i]);
         }
     };
-    Some(ladder::integrate(&chart, mu_o.into(), 1, tolerance, &mut add))
+    match model.chart() {
+        Some(chart) => ladder::integrate(&chart, mu_o.into(), 1, tolerance, &mut add),
+        None => adaptive::integrate(mu_o.into(), 1, tolerance, &mut add),
+    }
 }
 
 /// Ends of a panel.
@@ -70,26 +82,26 @@ static RECENT: Mutex<BTreeMap<String, Arc<AlbedoCurve>>> = Mutex::new(BTreeMap::
 const KEPT: usize = 512;
 
 impl AlbedoCurve {
-    /// The curve of a lobe that `key` names in full (model and parameters), made once; `None` if it declares no chart.
+    /// The curve of a lobe that `key` names in full (model and parameters), made once.
     #[must_use]
-    pub fn shared(key: &str, model: &dyn Brdf) -> Option<Arc<AlbedoCurve>> {
+    pub fn shared(key: &str, model: &dyn Brdf) -> Arc<AlbedoCurve> {
         let lock = || RECENT.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         if let Some(curve) = lock().get(key) {
-            return Some(Arc::clone(curve));
+            return Arc::clone(curve);
         }
         // Made without the lock: two threads may make the same curve, with the same bits.
-        let curve = Arc::new(AlbedoCurve::new(model)?);
+        let curve = Arc::new(AlbedoCurve::new(model));
         let mut recent = lock();
         if recent.len() >= KEPT {
             recent.clear();
         }
         recent.insert(key.to_owned(), Arc::clone(&curve));
-        Some(curve)
+        curve
     }
 
-    /// The curve of a lobe; `None` if it declares no chart.
+    /// The curve of a lobe.
     #[must_use]
-    pub fn new(model: &dyn Brdf) -> Option<AlbedoCurve> {
+    pub fn new(model: &dyn Brdf) -> AlbedoCurve {
         let mut error = 0.0_f64;
         let mut missing = Vec::with_capacity(PANELS);
         for panel in 0..PANELS {
@@ -97,7 +109,7 @@ impl AlbedoCurve {
             let mut values = [0.0; ORDER];
             for (i, v) in values.iter_mut().enumerate() {
                 let mu = 0.5 * ((lo + hi) + (hi - lo) * point(i));
-                let e = directional_albedo(model, mu, TOLERANCE)?;
+                let e = directional_albedo(model, mu, TOLERANCE);
                 error = error.max(e.error[0]);
                 *v = 1.0 - e.value[0];
             }
@@ -115,7 +127,7 @@ impl AlbedoCurve {
                 rule.integrate(lo, hi, |mu| 2.0 * mu * curve.on(panel, mu))
             })
             .sum();
-        Some(curve)
+        curve
     }
 
     /// 1 - E(mu).
@@ -190,7 +202,7 @@ mod tests {
         let given = given.as_object().cloned().unwrap_or_default();
         let params =
             Params::resolve(info.id, info.params, given.iter().map(|(k, v)| (k.as_str(), v))).unwrap();
-        AlbedoCurve::new(&*(info.build)(&params).unwrap()).unwrap()
+        AlbedoCurve::new(&*(info.build)(&params).unwrap())
     }
 
     #[test]

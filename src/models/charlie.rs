@@ -55,13 +55,19 @@ pub static INFO: ModelInfo = ModelInfo {
     build,
 };
 
+/// The lobe.
 #[derive(Debug)]
-struct Charlie {
+pub(super) struct Charlie {
     roughness: f64,
 }
 
+/// The lobe of a roughness, for materials that lay it over a base.
+pub(super) fn lobe(roughness: f64) -> ClothLobe<Charlie> {
+    ClothLobe(Charlie { roughness })
+}
+
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    Ok(Box::new(ClothLobe(Charlie { roughness: params.number("roughness") })))
+    Ok(Box::new(lobe(params.number("roughness"))))
 }
 
 impl Cloth for Charlie {

@@ -4,10 +4,10 @@
 //! a white surface reflects everything to the accuracy of the curve.
 
 use super::albedo_curve::{AlbedoCurve, directional_albedo};
+use super::lobes::{Diffuse, Part, Reflector, Sum};
 use super::microfacet::MASKING;
 use super::{Brdf, Param, ParamError, Params, Preset, Sample, microfacet};
 use crate::integrate::{BATCH, Chart, Estimate, Nodes};
-use crate::math::{frame, special};
 use crate::terms::multiple_scattering as ms;
 use crate::terms::schlick;
 use glam::{DVec2, DVec3};
@@ -63,32 +63,26 @@ pub(super) enum Rule {
     },
 }
 
-/// A lobe with a rule.
-#[derive(Debug)]
-struct Compensated {
-    single: Box<dyn Brdf>,
-    white: Arc<AlbedoCurve>,
-    rule: Rule,
-}
-
-/// Builds the single-scattering lobe, its white curve, and the rule that `make` chooses.
+/// Builds the single-scattering lobe, its white curve, and what the rule adds or multiplies.
 pub(super) fn build(
     model: &'static str,
     params: &Params,
-    make: fn(&Params, &Parts) -> Option<Rule>,
+    make: fn(&Params, &Parts) -> Rule,
 ) -> Result<Box<dyn Brdf>, ParamError> {
     let single = lobe(model, params, None)?;
     if single.mirror(1.0).is_some() {
         // a mirror loses nothing
         return Ok(single);
     }
-    let no_chart =
-        || ParamError::Together { model, why: "the single-scattering lobe declares no chart".to_owned() };
-    let white_lobe = lobe(model, params, Some(1.0))?;
-    let white = AlbedoCurve::shared(&key(params, true), &*white_lobe).ok_or_else(no_chart)?;
-    let parts = Parts { single: &*single, white: &white, key: key(params, false) };
-    let rule = make(params, &parts).ok_or_else(no_chart)?;
-    Ok(Box::new(Compensated { single, white, rule }))
+    let white = AlbedoCurve::shared(&key(params, true), &*lobe(model, params, Some(1.0))?);
+    let rule = make(params, &Parts { single: &*single, white: &white, key: key(params, false) });
+    if let Rule::Turquin { f0 } = rule {
+        return Ok(Box::new(Scaled { single, white, f0 }));
+    }
+    let average = white.missing_average();
+    let single = Part { weight: 1.0, chance: 1.0 - average, lobe: single };
+    let added = Part { weight: 1.0, chance: average, lobe: Box::new(Diffuse(Added { white, rule })) };
+    Ok(Box::new(Sum::new(vec![single, added])))
 }
 
 /// What a rule is made from.
@@ -106,7 +100,7 @@ impl Parts<'_> {
     }
 
     /// The curve of the lobe with its Fresnel factor.
-    pub(super) fn coloured(&self) -> Option<Arc<AlbedoCurve>> {
+    pub(super) fn coloured(&self) -> Arc<AlbedoCurve> {
         AlbedoCurve::shared(&self.key, self.single)
     }
 }
@@ -145,105 +139,88 @@ fn key(params: &Params, white: bool) -> String {
     format!("{base} {masking} {alpha:e} {gamma:e} {f0:e} {f90:e}")
 }
 
-impl Compensated {
-    /// Factor of the single-scattering lobe, and what is added to it, as a function of `mu_i`.
-    fn factor(&self, mu_o: f64) -> f64 {
-        match self.rule {
-            Rule::Turquin { f0 } => ms::turquin(f0, self.white.albedo(mu_o)),
-            _ => 1.0,
-        }
-    }
+/// The lobe that Kulla-Conty and Fdez-Aguera add.
+#[derive(Debug)]
+struct Added {
+    white: Arc<AlbedoCurve>,
+    rule: Rule,
+}
 
-    /// The added lobe is `self.height(mu_o) g(mu_i)`.
-    fn height(&self, mu_o: f64) -> f64 {
-        let missing = self.white.missing(mu_o).max(0.0);
+impl Added {
+    fn missing(&self, mu: f64) -> f64 {
+        self.white.missing(mu).max(0.0)
+    }
+}
+
+impl Reflector for Added {
+    fn f(&self, wo: DVec3, wi: DVec3) -> f64 {
         match &self.rule {
             Rule::KullaConty { colour } => {
-                colour * ms::kulla_conty(missing, 1.0, self.white.missing_average())
+                let average = self.white.missing_average();
+                colour * ms::kulla_conty(self.missing(wo.z), self.missing(wi.z), average)
             }
-            Rule::Turquin { .. } => 0.0,
-            Rule::FdezAguera { .. } => FRAC_1_PI * self.multiple(mu_o),
+            _ => FRAC_1_PI * self.albedo(wo.z).unwrap_or(0.0),
         }
     }
 
-    fn g(&self, mu_i: f64) -> f64 {
-        match self.rule {
-            Rule::KullaConty { .. } => self.white.missing(mu_i).max(0.0),
-            _ => 1.0,
-        }
-    }
-
-    /// Albedo of the added lobe, exactly.
-    fn multiple(&self, mu_o: f64) -> f64 {
-        let missing = self.white.missing(mu_o).max(0.0);
-        match &self.rule {
+    fn albedo(&self, mu_o: f64) -> Option<f64> {
+        let missing = self.missing(mu_o);
+        Some(match &self.rule {
             Rule::KullaConty { colour } => colour * missing,
             Rule::Turquin { .. } => 0.0,
             Rule::FdezAguera { f_avg, coloured } => {
                 coloured.albedo(mu_o) * f_avg * missing / (1.0 - f_avg * missing)
             }
-        }
+        })
     }
 
-    /// Share of the samples that go to the single-scattering lobe.
-    fn share(&self, mu_o: f64) -> f64 {
-        (1.0 - self.multiple(mu_o)).clamp(0.05, 1.0)
+    fn chart(&self) -> Option<Chart> {
+        Some(Chart::Broad { kinks: false })
     }
 }
 
-impl Brdf for Compensated {
+/// Turquin's: the lobe times a factor of the view.
+#[derive(Debug)]
+struct Scaled {
+    single: Box<dyn Brdf>,
+    white: Arc<AlbedoCurve>,
+    f0: f64,
+}
+
+impl Scaled {
+    fn factor(&self, mu_o: f64) -> f64 {
+        ms::turquin(self.f0, self.white.albedo(mu_o))
+    }
+}
+
+impl Brdf for Scaled {
     fn eval(&self, wo: DVec3, wi: DVec3) -> f64 {
-        if !frame::both_above(wo, wi) {
-            return 0.0;
-        }
-        self.single.eval(wo, wi) * self.factor(wo.z) + self.height(wo.z) * self.g(wi.z)
+        self.single.eval(wo, wi) * self.factor(wo.z)
     }
 
     fn sample(&self, wo: DVec3, u: DVec2) -> Option<Sample> {
-        let share = self.share(wo.z);
-        let wi = if u.x < share {
-            self.single.sample(wo, DVec2::new(u.x / share, u.y))?.wi
-        } else {
-            let x = (u.x - share) / (1.0 - share);
-            let (cos, sin) = special::circle(u.y);
-            let r = x.sqrt();
-            DVec3::new(r * cos, r * sin, (1.0 - x).max(0.0).sqrt())
-        };
-        (wi.z > 0.0).then(|| Sample { wi, pdf: self.pdf(wo, wi) })
+        self.single.sample(wo, u)
     }
 
     fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
-        if !frame::both_above(wo, wi) {
-            return 0.0;
-        }
-        let share = self.share(wo.z);
-        share * self.single.pdf(wo, wi) + (1.0 - share) * wi.z * FRAC_1_PI
+        self.single.pdf(wo, wi)
     }
 
-    /// That of the lobe, without an end: the added lobe covers the hemisphere.
     fn chart(&self) -> Option<Chart> {
-        match self.single.chart()? {
-            Chart::HalfVector { alpha, kinks, .. } => {
-                Some(Chart::HalfVector { alpha, reach: f64::INFINITY, kinks })
-            }
-            other => Some(other),
-        }
+        self.single.chart()
     }
 
     fn eval_nodes(&self, nodes: &Nodes, out: &mut [f64; BATCH]) {
         self.single.eval_nodes(nodes, out);
-        let (factor, height) = (self.factor(nodes.mu_o), self.height(nodes.mu_o));
-        for (o, mu_i) in out[..nodes.len].iter_mut().zip(&nodes.mu_i) {
-            *o = *o * factor + height * self.g(*mu_i);
-        }
+        let factor = self.factor(nodes.mu_o);
+        out[..nodes.len].iter_mut().for_each(|o| *o *= factor);
     }
 
-    /// The lobe's own, times the factor, plus that of the added lobe.
     fn reduced_albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
-        let mut e = directional_albedo(&*self.single, mu_o, tolerance)?;
         let factor = self.factor(mu_o);
-        e.value[0] = e.value[0] * factor + self.multiple(mu_o);
-        e.error[0] = e.error[0] * factor + self.white.error();
+        let mut e = directional_albedo(&*self.single, mu_o, tolerance / factor);
+        e.value[0] *= factor;
+        e.error[0] *= factor;
         Some(e)
     }
 }

@@ -39,7 +39,8 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    compensated::build(INFO.id, params, |params, parts: &Parts<'_>| {
-        Some(Rule::FdezAguera { f_avg: compensated::f_avg(params), coloured: parts.coloured()? })
+    compensated::build(INFO.id, params, |params, parts: &Parts<'_>| Rule::FdezAguera {
+        f_avg: compensated::f_avg(params),
+        coloured: parts.coloured(),
     })
 }

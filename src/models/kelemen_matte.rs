@@ -3,16 +3,14 @@
 //! Recipe: `model = "kelemen-matte"`, `params = { alpha = 0.2, f0 = 0.04, rho = 0.5 }`: polished wood, plastic, skin. The matte lobe
 //! darkens where the specular one takes the light.
 
-use super::albedo_curve::{AlbedoCurve, directional_albedo};
-use super::facets::HalfVectorLobe;
-use super::kelemen::{self, Kelemen};
+use super::albedo_curve::AlbedoCurve;
+use super::lobes::{Diffuse, Part, Reflector, Sum};
 use super::microfacet::{F90, Fresnel};
-use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity, Sample};
+use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity, kelemen};
 use crate::cite;
-use crate::integrate::{Chart, Estimate};
-use crate::math::{frame, special};
-use glam::{DVec2, DVec3};
-use std::f64::consts::FRAC_1_PI;
+use crate::integrate::Chart;
+use crate::terms::multiple_scattering;
+use glam::DVec3;
 use std::sync::Arc;
 
 /// Registry entry.
@@ -54,80 +52,34 @@ pub static INFO: ModelInfo = ModelInfo {
     build,
 };
 
-#[derive(Debug)]
-struct Coupled {
-    specular: HalfVectorLobe<Kelemen>,
-    curve: Arc<AlbedoCurve>,
-    alpha: f64,
-    rho: f64,
-}
-
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     let (alpha, f0, f90) = (params.number("alpha"), params.number("f0"), params.number("f90"));
+    let rho = params.number("rho");
     let specular = kelemen::lobe(alpha, Fresnel::Schlick { f0, f90 });
-    let curve =
-        AlbedoCurve::shared(&format!("kelemen {alpha:e} {f0:e} {f90:e}"), &specular).ok_or_else(|| {
-            ParamError::Together { model: INFO.id, why: "the specular lobe has no chart".to_owned() }
-        })?;
-    Ok(Box::new(Coupled { specular, curve, alpha, rho: params.number("rho") }))
+    let curve = AlbedoCurve::shared(&format!("kelemen {alpha:e} {f0:e} {f90:e}"), &specular);
+    let average = curve.missing_average();
+    let specular = Part { weight: 1.0, chance: 1.0 - average, lobe: Box::new(specular) };
+    let matte = Part { weight: rho, chance: rho * average, lobe: Box::new(Diffuse(Matte { curve })) };
+    Ok(Box::new(Sum::new(vec![specular, matte])))
 }
 
-impl Coupled {
-    fn matte(&self, mu_o: f64, mu_i: f64) -> f64 {
-        let average = self.curve.missing_average();
-        if average <= 0.0 {
-            return 0.0;
-        }
-        let product = self.curve.missing(mu_o).max(0.0) * self.curve.missing(mu_i).max(0.0);
-        self.rho * FRAC_1_PI * product / average
-    }
-
-    /// Share of the samples that go to the specular lobe.
-    fn share(&self, mu_o: f64) -> f64 {
-        let e = self.curve.albedo(mu_o).clamp(0.0, 1.0);
-        let rest = self.rho * (1.0 - e);
-        if e + rest > 0.0 { (e / (e + rest)).clamp(0.05, 1.0) } else { 1.0 }
-    }
+/// What the specular lobe leaves, for a white base.
+#[derive(Debug)]
+struct Matte {
+    curve: Arc<AlbedoCurve>,
 }
 
-impl Brdf for Coupled {
-    fn eval(&self, wo: DVec3, wi: DVec3) -> f64 {
-        if !frame::both_above(wo, wi) {
-            return 0.0;
-        }
-        self.specular.eval(wo, wi) + self.matte(wo.z, wi.z)
+impl Reflector for Matte {
+    fn f(&self, wo: DVec3, wi: DVec3) -> f64 {
+        let missing = |mu| self.curve.missing(mu).max(0.0);
+        multiple_scattering::kulla_conty(missing(wo.z), missing(wi.z), self.curve.missing_average())
     }
 
-    fn sample(&self, wo: DVec3, u: DVec2) -> Option<Sample> {
-        let share = self.share(wo.z);
-        let wi = if u.x < share {
-            self.specular.sample(wo, DVec2::new(u.x / share, u.y))?.wi
-        } else {
-            let x = (u.x - share) / (1.0 - share);
-            let (cos, sin) = special::circle(u.y);
-            let r = x.sqrt();
-            DVec3::new(r * cos, r * sin, (1.0 - x).max(0.0).sqrt())
-        };
-        (wi.z > 0.0).then(|| Sample { wi, pdf: self.pdf(wo, wi) })
+    fn albedo(&self, mu_o: f64) -> Option<f64> {
+        Some(self.curve.missing(mu_o).max(0.0))
     }
 
-    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64 {
-        if !frame::both_above(wo, wi) {
-            return 0.0;
-        }
-        let share = self.share(wo.z);
-        share * self.specular.pdf(wo, wi) + (1.0 - share) * wi.z * FRAC_1_PI
-    }
-
-    /// That of the specular lobe, without an end: the matte lobe covers the hemisphere.
     fn chart(&self) -> Option<Chart> {
-        Some(Chart::HalfVector { alpha: self.alpha, reach: f64::INFINITY, kinks: false })
-    }
-
-    /// `E + rho (1 - E)`.
-    fn reduced_albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
-        let mut e = directional_albedo(&self.specular, mu_o, tolerance)?;
-        e.value[0] += self.rho * (1.0 - e.value[0]);
-        Some(e)
+        Some(Chart::Broad { kinks: false })
     }
 }

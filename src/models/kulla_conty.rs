@@ -48,9 +48,9 @@ fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     compensated::build(INFO.id, params, rule)
 }
 
-fn rule(params: &Params, parts: &Parts<'_>) -> Option<Rule> {
+fn rule(params: &Params, parts: &Parts<'_>) -> Rule {
     let (f_avg, e_avg) = (compensated::f_avg(params), parts.e_avg());
     let slides = params.choice("colour") == "slides";
     let colour = if slides { ms::colour_slides(f_avg, e_avg) } else { ms::colour_series(f_avg, e_avg) };
-    Some(Rule::KullaConty { colour })
+    Rule::KullaConty { colour }
 }

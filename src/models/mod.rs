@@ -12,6 +12,7 @@ pub mod banks;
 pub mod beckmann;
 pub mod beckmann_conductor;
 pub mod beckmann_dielectric;
+pub mod beckmann_glass;
 pub mod blinn_phong;
 pub mod blinn_phong_classic;
 pub mod blinn_phong_microfacet;
@@ -32,7 +33,10 @@ pub mod fujii;
 pub mod ggx;
 pub mod ggx_conductor;
 pub mod ggx_dielectric;
+pub mod ggx_glass;
 pub mod ggx_schlick_masking;
+pub mod glass;
+pub mod gltf;
 pub mod gtr;
 pub mod kelemen;
 pub mod kelemen_matte;
@@ -100,9 +104,11 @@ pub static MODELS: &[&ModelInfo] = &[
     &ggx::INFO,
     &ggx_conductor::INFO,
     &ggx_dielectric::INFO,
+    &ggx_glass::INFO,
     &beckmann::INFO,
     &beckmann_conductor::INFO,
     &beckmann_dielectric::INFO,
+    &beckmann_glass::INFO,
     &student_t::INFO,
     &gtr::INFO,
     &torrance_sparrow::INFO,
@@ -116,6 +122,7 @@ pub static MODELS: &[&ModelInfo] = &[
     &kelemen_matte::INFO,
     &kelemen_skin::INFO,
     &disney_clearcoat::INFO,
+    &gltf::INFO,
     &charlie::INFO,
     &charlie_neubelt::INFO,
     &velvet_ashikhmin::INFO,
@@ -165,10 +172,34 @@ pub trait Brdf: Debug + Send + Sync {
         None
     }
 
+    /// The light that crosses the surface, if any does. `eval` then has values for directions on opposite sides too; `sample`
+    /// and `pdf` remain those of the reflected part, and so do all albedos.
+    fn transmission(&self) -> Option<&dyn Btdf> {
+        None
+    }
+
     /// Directional albedo by a reduction that is cheaper than the chart, if the model knows one.
     fn reduced_albedo(&self, _mu_o: f64, _tolerance: f64) -> Option<Estimate> {
         None
     }
+}
+
+/// The transmitted part of a model: `wi` on the other side of the surface than `wo`, both away from it.
+///
+/// f is that of radiance: light that arrives along `wi`, with the factor n_o² of the side that it leaves to.
+pub trait Btdf: Debug {
+    /// The value f in 1/sr, without the cosine; 0 for directions on one side or in the horizon; finite.
+    fn eval(&self, wo: DVec3, wi: DVec3) -> f64;
+
+    /// Draws `wi` below the surface for a view from above; `None` where the draw does not cross it.
+    fn sample(&self, wo: DVec3, u: DVec2) -> Option<Sample>;
+
+    /// Density of [`Btdf::sample`] per unit solid angle of `wi`, 1/sr.
+    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64;
+
+    /// The part T of the flux arriving along `wo` that crosses, `int f(wi, wo) |mu_i| dwi`, with its error; `None` if it
+    /// has no rule for it. The integral of `f(wo, wi)` is T times (n_o / n_i)².
+    fn albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate>;
 }
 
 /// A drawn direction and its density.

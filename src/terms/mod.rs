@@ -20,6 +20,7 @@ pub mod metals;
 pub mod multiple_scattering;
 pub mod normal_filtering;
 pub mod phase;
+pub mod refraction;
 pub mod schlick;
 pub mod schlick_masking;
 pub mod sggx;
