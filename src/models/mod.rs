@@ -57,6 +57,7 @@ pub mod phong;
 pub mod phong_classic;
 pub mod phong_shading;
 pub mod sggx_fiber;
+pub mod smooth_glass;
 pub mod student_t;
 pub mod torrance_sparrow;
 pub mod turquin;
@@ -77,6 +78,7 @@ use std::fmt::Debug;
 pub static MODELS: &[&ModelInfo] = &[
     &lambert::INFO,
     &mirror::INFO,
+    &smooth_glass::INFO,
     &oren_nayar::INFO,
     &oren_nayar_full::INFO,
     &fujii::INFO,
