@@ -37,6 +37,7 @@ pub mod ggx_glass;
 pub mod ggx_schlick_masking;
 pub mod glass;
 pub mod gltf;
+mod grooves;
 pub mod gtr;
 pub mod kelemen;
 pub mod kelemen_matte;
