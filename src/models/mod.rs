@@ -307,6 +307,12 @@ pub fn find(name: &str) -> Option<(&'static ModelInfo, Implied)> {
 }
 
 impl ModelInfo {
+    /// The parameter of a name, or of another spelling of it.
+    #[must_use]
+    pub fn param(&self, name: &str) -> Option<&'static Param> {
+        self.params.iter().find(|p| p.is_called(name))
+    }
+
     /// Parameters whose default is the value of another one.
     pub fn followers<'a>(&self, leader: &'a str) -> impl Iterator<Item = &'static str> + use<'a> {
         let follows =

@@ -10,6 +10,7 @@ pub mod fresnel_dielectric;
 pub mod integral;
 pub mod kelemen_beckmann;
 pub mod ndf;
+pub mod selection;
 pub mod spec;
 pub mod sweep;
 
@@ -17,6 +18,7 @@ use crate::cite::Cite;
 use crate::grid::{Axis, Channel, table::named};
 use crate::integrate::Estimate;
 use crate::models::Param;
+pub use selection::Selection;
 pub use spec::{BindError, Bound, Spec};
 
 /// Every table kind, in the order of `list tables`.
@@ -70,7 +72,7 @@ pub struct Layout {
 }
 
 /// A channel of a layout.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChannelInfo {
     /// Name in files.
     pub id: &'static str,
@@ -114,6 +116,8 @@ pub struct TableInfo {
     pub coordinates: &'static [&'static str],
     /// Channel layouts; the first is the default.
     pub layouts: &'static [Layout],
+    /// Channels that are in no layout; a recipe picks them by `channels`.
+    pub extra: &'static [ChannelInfo],
     /// What it wants of a model.
     pub model: ModelUse,
     /// Parameters of its own.
@@ -126,6 +130,20 @@ pub struct TableInfo {
     pub notes: &'static str,
     /// Binds a resolved spec.
     pub bind: fn(&Spec) -> Result<Box<dyn Baker>, BindError>,
+}
+
+impl TableInfo {
+    /// Every channel that a table of this kind can hold: those of the layouts in order, then the extra ones.
+    #[must_use]
+    pub fn pool(&self) -> Vec<ChannelInfo> {
+        let mut pool: Vec<ChannelInfo> = Vec::new();
+        for channel in self.layouts.iter().flat_map(|l| l.channels).chain(self.extra) {
+            if pool.iter().all(|c| c.id != channel.id) {
+                pool.push(*channel);
+            }
+        }
+        pool
+    }
 }
 
 /// Finds a table kind by id.
