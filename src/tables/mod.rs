@@ -10,6 +10,8 @@ pub mod fresnel_dielectric;
 pub mod integral;
 pub mod kelemen_beckmann;
 pub mod ndf;
+pub mod preintegrated_skin;
+pub mod profile;
 pub mod spec;
 pub mod sweep;
 
@@ -27,6 +29,7 @@ pub static TABLES: &[&TableInfo] = &[
     &fresnel_dielectric::INFO,
     &ndf::INFO,
     &kelemen_beckmann::INFO,
+    &preintegrated_skin::INFO,
 ];
 
 /// A table kind bound to a model, parameters and axes: computes one texel. Pure: no threads, no clamps, no output.

@@ -17,6 +17,7 @@ pub mod seeds;
 pub mod split;
 pub mod survey;
 pub mod tolerance;
+pub mod total;
 
 use crate::grid::Table;
 use crate::grid::provenance::{LawRecord, Waiver};
@@ -30,6 +31,7 @@ pub static LAWS: &[&Law] = &[
     &energy::LAW,
     &split::LAW,
     &normalised::LAW,
+    &total::LAW,
     &reversible::LAW,
     &cross_check::LAW,
     &reciprocity::LAW,
