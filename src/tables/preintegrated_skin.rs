@@ -55,16 +55,8 @@ pub static INFO: TableInfo = TableInfo {
     bind,
 };
 
-static PARAMS: [Param; 1 + profile::PARAMS.len()] = {
-    let mut all = [Param::choice("over", "what is blurred: a ring, as published, or the sphere", &["ring", "sphere"]);
-        1 + profile::PARAMS.len()];
-    let mut i = 0;
-    while i < profile::PARAMS.len() {
-        all[1 + i] = profile::PARAMS[i];
-        i += 1;
-    }
-    all
-};
+static PARAMS: [Param; 1 + profile::PARAMS.len()] =
+    profile::with(Param::choice("over", "what is blurred: a ring, as published, or the sphere", &["ring", "sphere"]));
 
 fn default_axes() -> Vec<Axis> {
     let axis = |id: &str, domain| Quantity::find(id).map(|q| Axis::new(q, 128, Texel::Endpoint).over(domain));
@@ -102,13 +94,7 @@ impl Baker for Skin {
             return Ok(Estimate::exact(value));
         }
         let blur = Blur::new(&self.profile, self.sphere, libm::acos(mu), 1.0 / curvature);
-        let e = blur.integrate(tolerance);
-        for (channel, (v, error)) in e.value.iter().zip(&e.error).take(3).enumerate() {
-            if !(v.is_finite() && error.is_finite()) {
-                return Err(TexelError::NotFinite { channel, value: *v });
-            }
-        }
-        Ok(e)
+        super::finite(blur.integrate(tolerance), 3)
     }
 
     fn rule(&self) -> String {

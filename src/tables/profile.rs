@@ -73,6 +73,23 @@ pub const PARAMS: &[Param] = &[
     measured("eta", "1", "of profile dipole: relative index of the medium", [1.0, 3.0], 1.3),
 ];
 
+/// [`PARAMS`] after a parameter of the kind's own.
+#[must_use]
+pub const fn with(own: Param) -> [Param; 1 + PARAMS.len()] {
+    let mut all = [own; 1 + PARAMS.len()];
+    let mut i = 0;
+    while i < PARAMS.len() {
+        all[1 + i] = PARAMS[i];
+        i += 1;
+    }
+    all
+}
+
+/// What the notes of a kind say of the profiles.
+pub const NOTES: &str = "Profiles, lengths in mm: skin (six Gaussians, white), gaussians (rows of variance and three weights), burley (albedo and \
+    length a channel), dipole (coefficients a channel). The defaults of the last two are skin1 of Jensen and others 2001; 3.67, 1.37 and 0.68 mm \
+    are its diffuse mean free paths.";
+
 /// A profile of each channel, divided by its total.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Profile {

@@ -8,6 +8,7 @@ pub mod cross_check;
 pub mod energy;
 pub mod finding;
 pub mod finite;
+pub mod monotone;
 pub mod normalised;
 pub mod range;
 pub mod reciprocity;
@@ -28,6 +29,7 @@ pub use finding::Finding;
 pub static LAWS: &[&Law] = &[
     &finite::LAW,
     &range::LAW,
+    &monotone::LAW,
     &energy::LAW,
     &split::LAW,
     &normalised::LAW,
