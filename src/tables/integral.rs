@@ -2,7 +2,7 @@
 //!
 //! `I_j = int f(wo, wi) g_j(wo . wh) mu_i dwi`, all channels over the same nodes in one pass.
 
-use super::TexelError;
+use super::{TexelError, finite};
 use crate::integrate::{BATCH, Estimate, MAX_CHANNELS, Nodes, Sums, View, adaptive, ladder};
 use crate::models::Brdf;
 use crate::terms::{fresnel, schlick};
@@ -170,13 +170,4 @@ fn sum(
         total.evaluations = total.evaluations.saturating_add(e.evaluations);
     }
     finite(total, functionals.len())
-}
-
-fn finite(estimate: Estimate, channels: usize) -> Result<Estimate, TexelError> {
-    for (channel, (&value, &error)) in estimate.value.iter().zip(&estimate.error).take(channels).enumerate() {
-        if !(value.is_finite() && error.is_finite()) {
-            return Err(TexelError::NotFinite { channel, value });
-        }
-    }
-    Ok(estimate)
 }

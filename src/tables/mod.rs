@@ -5,12 +5,19 @@
 pub mod albedo;
 pub mod average_albedo;
 pub mod dfg;
+pub mod diffusion_kernel;
+pub mod diffusion_profile;
+pub mod diffusion_sampling;
 pub mod driver;
 pub mod fresnel_dielectric;
+pub mod gaussian_fit;
 pub mod integral;
 pub mod kelemen_beckmann;
 pub mod ndf;
+pub mod preintegrated_skin;
+pub mod profile;
 pub mod selection;
+pub mod skin_transmittance;
 pub mod spec;
 pub mod sweep;
 
@@ -29,6 +36,12 @@ pub static TABLES: &[&TableInfo] = &[
     &fresnel_dielectric::INFO,
     &ndf::INFO,
     &kelemen_beckmann::INFO,
+    &preintegrated_skin::INFO,
+    &diffusion_profile::INFO,
+    &diffusion_kernel::INFO,
+    &diffusion_sampling::INFO,
+    &gaussian_fit::INFO,
+    &skin_transmittance::INFO,
 ];
 
 /// A table kind bound to a model, parameters and axes: computes one texel. Pure: no threads, no clamps, no output.
@@ -58,6 +71,21 @@ pub enum TexelError {
     /// The model refuses its parameters here.
     #[error(transparent)]
     Param(#[from] crate::models::ParamError),
+}
+
+/// Values in closed form, if the first `channels` of them are finite.
+fn closed_form(value: crate::integrate::Sums, channels: usize) -> Result<Estimate, TexelError> {
+    finite(Estimate::exact(value), channels)
+}
+
+/// An estimate of which the first `channels` values and errors are finite.
+fn finite(e: Estimate, channels: usize) -> Result<Estimate, TexelError> {
+    for (channel, (&value, &error)) in e.value.iter().zip(&e.error).take(channels).enumerate() {
+        if !(value.is_finite() && error.is_finite()) {
+            return Err(TexelError::NotFinite { channel, value });
+        }
+    }
+    Ok(e)
 }
 
 /// A named set of channels of a table kind.
