@@ -8,9 +8,9 @@
 //! where the model is 0, is integrated in the space of the cosine. The search is Newton's, from the moments of the target. Then the
 //! level is raised until the matrices of two levels agree. Nothing depends on neighbouring texels.
 
-mod below;
 mod newton;
 mod objective;
+mod proposal;
 mod target;
 
 use super::TexelError;
@@ -92,7 +92,7 @@ pub fn fit(model: &dyn Brdf, view: View, family: Family, tolerance: f64) -> Resu
     // along the normal every lobe of an isotropic surface is round
     let round = view.sine().abs() == 0.0 && !model.turns();
     let family = if round { Family::Round } else { family };
-    let mut scratch = Vec::new();
+    let mut nodes = Vec::new();
     let mut evaluations = 0u32;
     let mut last: Option<Fit> = None;
     let mut result = None;
@@ -103,12 +103,13 @@ pub fn fit(model: &dyn Brdf, view: View, family: Family, tolerance: f64) -> Resu
             return Ok(Fitted { fit: dark, coarse: dark, evaluations });
         }
         let start = last.map_or_else(|| family.nearest(&target.moments()), |f| f.inverse);
-        let optimum = newton::minimise(&target, start, family, &mut scratch);
+        target.nodes_for(&start, &mut nodes);
+        let optimum = newton::minimise(&nodes, start, family);
         evaluations = evaluations.saturating_add(optimum.evaluations);
         let fit = Fit {
             inverse: optimum.inverse,
             l3: libm::cbrt(optimum.value / target.cube),
-            variation: objective::variation(&target, &optimum.inverse),
+            variation: objective::variation(&nodes, &optimum.inverse),
             albedo: target.albedo,
         };
         let coarse = last.unwrap_or(fit);
@@ -127,11 +128,13 @@ pub fn fit(model: &dyn Brdf, view: View, family: Family, tolerance: f64) -> Resu
 /// As [`fit`].
 pub fn judge(model: &dyn Brdf, view: View, inverse: &Inverse, level: f64) -> Result<Fit, TexelError> {
     let target = Target::new(model, view, level)?;
-    let at = objective::objective(&target, inverse, &mut Vec::new());
+    let mut nodes = Vec::new();
+    target.nodes_for(inverse, &mut nodes);
+    let at = objective::objective(&nodes, inverse);
     Ok(Fit {
         inverse: *inverse,
         l3: libm::cbrt(at.value / target.cube),
-        variation: objective::variation(&target, inverse),
+        variation: objective::variation(&nodes, inverse),
         albedo: target.albedo,
     })
 }

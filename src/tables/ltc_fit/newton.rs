@@ -4,8 +4,8 @@
 //! there, so a step is relative to the lobe's own widths. The sets of matrices of every [`Family`] are closed under their steps.
 
 use super::Family;
-use super::objective::{N, Objective, Scratch, objective};
-use super::target::Target;
+use super::objective::{N, Objective, objective};
+use super::target::Node;
 use crate::terms::ltc::Inverse;
 
 /// Most evaluations of the objective.
@@ -42,9 +42,9 @@ pub(super) fn step(b: &Inverse, d: [f64; N]) -> Inverse {
 }
 
 /// The nearest local minimum below `start`.
-pub(super) fn minimise(target: &Target, start: Inverse, family: Family, scratch: &mut Scratch) -> Optimum {
+pub(super) fn minimise(nodes: &[Node], start: Inverse, family: Family) -> Optimum {
     let mut inverse = start.scaled(1.0 / start.m22);
-    let mut here = objective(target, &inverse, scratch);
+    let mut here = objective(nodes, &inverse);
     let mut damping = DAMPING[0];
     let mut evaluations = 1;
     while evaluations < EVALUATIONS && damping < DAMPING[1] {
@@ -54,7 +54,7 @@ pub(super) fn minimise(target: &Target, start: Inverse, family: Family, scratch:
         };
         let length = d.iter().fold(0.0f64, |m, x| m.max(x.abs()));
         let next = step(&inverse, d);
-        let there = objective(target, &next, scratch);
+        let there = objective(nodes, &next);
         evaluations += 1;
         // NaN is no improvement
         if next.minor() > 0.0 && next.m22 > 0.0 && there.value <= here.value {
@@ -70,7 +70,7 @@ pub(super) fn minimise(target: &Target, start: Inverse, family: Family, scratch:
             damping = (damping * 10.0).max(1e-3);
         }
     }
-    let evaluations = u32::try_from(evaluations * target.nodes.len()).unwrap_or(u32::MAX);
+    let evaluations = u32::try_from(evaluations * nodes.len()).unwrap_or(u32::MAX);
     Optimum { inverse, value: here.value, evaluations }
 }
 

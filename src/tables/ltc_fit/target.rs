@@ -1,7 +1,8 @@
 //! What a transformed cosine is fitted to: the lobe `f mu_i / E` at the nodes of the model's own chart.
 
 use super::super::TexelError;
-use crate::integrate::{BATCH, Chart, View};
+use super::proposal;
+use crate::integrate::{BATCH, Chart, Nodes, View};
 use crate::models::Brdf;
 use crate::terms::ltc::Inverse;
 use glam::DVec3;
@@ -14,9 +15,14 @@ pub(super) struct Node {
     pub(super) weight: f64,
 }
 
+/// Factor on the lobe's density where nodes are shared: where both agree, the chart has 8 parts in 9.
+const FAVOUR: f64 = 0.5;
+
 /// A normalised lobe on nodes that cover the hemisphere.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Target {
+pub(super) struct Target<'a> {
+    parts: Vec<(f64, &'a dyn Brdf)>,
+    view: View,
+    level: f64,
     pub(super) nodes: Vec<Node>,
     /// `E = int f mu_i dwi`.
     pub(super) albedo: f64,
@@ -24,49 +30,59 @@ pub(super) struct Target {
     pub(super) cube: f64,
 }
 
-impl Target {
+impl<'a> Target<'a> {
     /// At one level of the charts of the model's lobes.
     ///
     /// The nodes of several charts share the hemisphere in the ratio of the cubes of their lobes, so that each
     /// covers what its chart resolves. Errors: a mirror has no width to fit; a value that is not finite.
-    pub(super) fn new(model: &dyn Brdf, view: View, level: f64) -> Result<Target, TexelError> {
-        let mut target = Target::default();
-        match model.parts() {
-            None => target.gather(model, view, level)?,
-            Some(parts) => {
-                let parts: Vec<_> = parts.into_iter().filter(|p| p.0 > 0.0).collect();
-                for (own, &(_, part)) in parts.iter().enumerate() {
-                    let from = target.nodes.len();
-                    target.gather(part, view, level)?;
-                    for node in &mut target.nodes[from..] {
-                        share(node, &parts, own, view.direction());
-                    }
-                }
-            }
+    pub(super) fn new(model: &'a dyn Brdf, view: View, level: f64) -> Result<Target<'a>, TexelError> {
+        let parts = model.parts().unwrap_or_else(|| vec![(1.0, model)]);
+        let parts: Vec<_> = parts.into_iter().filter(|p| p.0 > 0.0).collect();
+        if parts.iter().any(|(_, part)| part.mirror(view.mu).is_some()) {
+            return Err(TexelError::NoWidth);
+        }
+        let mut target = Target { parts, view, level, nodes: Vec::new(), albedo: 0.0, cube: 0.0 };
+        for own in 0..target.parts.len() {
+            target.gather(own);
         }
         target.normalise()
     }
 
-    /// Appends the nodes of one chart.
-    fn gather(&mut self, model: &dyn Brdf, view: View, level: f64) -> Result<(), TexelError> {
-        if model.mirror(view.mu).is_some() {
-            return Err(TexelError::NoWidth);
-        }
-        let mut values = [0.0; BATCH];
-        let nodes = &mut self.nodes;
-        model.chart().unwrap_or(Chart::Broad { kinks: true }).visit(view, level, &mut |batch| {
-            model.eval_nodes(batch, &mut values);
-            for (i, value) in values[..batch.len].iter().enumerate() {
-                let weight = batch.weight[i];
-                if weight > 0.0 {
-                    nodes.push(Node { w: batch.wi(i), lobe: value * batch.mu_i[i], weight });
+    /// Appends the nodes of the chart of one part.
+    fn gather(&mut self, own: usize) {
+        let (parts, nodes) = (&self.parts, &mut self.nodes);
+        let chart = parts[own].1.chart().unwrap_or(Chart::Broad { kinks: true });
+        let (mut values, mut sum, mut cubes, mut mine) = ([0.0; BATCH], [0.0; BATCH], [0.0; BATCH], [0.0; BATCH]);
+        chart.visit(self.view, self.level, &mut |batch| {
+            sum.fill(0.0);
+            cubes.fill(0.0);
+            for (k, &(factor, part)) in parts.iter().enumerate() {
+                part.eval_nodes(batch, &mut values);
+                for i in 0..batch.len {
+                    let value = factor * values[i] * batch.mu_i[i];
+                    sum[i] += value;
+                    cubes[i] += cube(value);
+                    if k == own {
+                        mine[i] = cube(value);
+                    }
+                }
+            }
+            for i in 0..batch.len {
+                let share = if parts.len() == 1 {
+                    1.0
+                } else if cubes[i] > 0.0 {
+                    mine[i] / cubes[i]
+                } else {
+                    1.0 / parts.len() as f64
+                };
+                if batch.weight[i] > 0.0 {
+                    nodes.push(Node { w: batch.wi(i), lobe: sum[i], weight: batch.weight[i] * share });
                 }
             }
         });
-        Ok(())
     }
 
-    fn normalise(mut self) -> Result<Target, TexelError> {
+    fn normalise(mut self) -> Result<Target<'a>, TexelError> {
         let albedo: f64 = self.nodes.iter().map(|n| n.weight * n.lobe).sum();
         if !(albedo.is_finite() && albedo >= 0.0) {
             return Err(TexelError::NotFinite { channel: 0, value: albedo });
@@ -75,9 +91,46 @@ impl Target {
         let scale = if albedo > 0.0 { 1.0 / albedo } else { 0.0 };
         for node in &mut self.nodes {
             node.lobe *= scale;
-            self.cube += node.weight * (node.lobe * node.lobe) * node.lobe;
+            self.cube += node.weight * cube(node.lobe);
         }
         Ok(self)
+    }
+
+    /// Nodes over the whole sphere for the difference of the target and a lobe like `proposal`.
+    ///
+    /// Nodes of the model's chart and of the lobe's own share the upper hemisphere in the ratio of the cubes of the two
+    /// densities: where one has a peak that the other's nodes may step over, its own nodes count.
+    pub(super) fn nodes_for(&self, proposal: &Inverse, out: &mut Vec<Node>) {
+        let (mut above, mut below) = (Vec::new(), Vec::new());
+        proposal::nodes(proposal, self.level, &mut above, &mut below);
+        self.evaluate(&mut above);
+        let share = |n: &Node| {
+            let (t, d) = (cube(n.lobe), cube(FAVOUR * proposal.density(n.w)));
+            if t + d > 0.0 { t / (t + d) } else { 1.0 }
+        };
+        out.clear();
+        out.extend(self.nodes.iter().map(|n| Node { weight: n.weight * share(n), ..*n }));
+        out.extend(above.iter().map(|n| Node { weight: n.weight * (1.0 - share(n)), ..*n }));
+        out.append(&mut below);
+    }
+
+    /// Sets the lobe at nodes above the horizon.
+    fn evaluate(&self, nodes: &mut [Node]) {
+        let mut batch = Nodes::new(self.view);
+        let mut values = [0.0; BATCH];
+        for run in nodes.chunks_mut(BATCH) {
+            batch.len = run.len();
+            for (i, node) in run.iter().enumerate() {
+                let w = node.w;
+                batch.set(i, DVec3::new(w.x, w.y, w.z.max(0.0)), node.weight);
+            }
+            for &(factor, part) in &self.parts {
+                part.eval_nodes(&batch, &mut values);
+                for (i, node) in run.iter_mut().enumerate() {
+                    node.lobe += factor / self.albedo * values[i] * batch.mu_i[i];
+                }
+            }
+        }
     }
 
     /// A lobe with the mean direction and the widths of the square of the target.
@@ -110,20 +163,6 @@ impl Target {
     }
 }
 
-/// Sets a node of one part's chart to the whole lobe, and its weight to the share of that chart.
-fn share(node: &mut Node, parts: &[(f64, &dyn Brdf)], own: usize, wo: DVec3) {
-    let cube = |x: f64| x * x * x;
-    let (mut sum, mut cubes, mut mine) = (0.0, 0.0, 0.0);
-    for (k, &(factor, part)) in parts.iter().enumerate() {
-        // the part's own value stays as its chart computed it
-        let value =
-            if k == own { factor * node.lobe } else { factor * part.eval(wo, node.w) * node.w.z };
-        sum += value;
-        cubes += cube(value);
-        if k == own {
-            mine = cube(value);
-        }
-    }
-    node.lobe = sum;
-    node.weight *= if cubes > 0.0 { mine / cubes } else { 1.0 / parts.len() as f64 };
+fn cube(x: f64) -> f64 {
+    x * x * x
 }
