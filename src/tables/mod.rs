@@ -13,6 +13,7 @@ pub mod fresnel_dielectric;
 pub mod gaussian_fit;
 pub mod integral;
 pub mod kelemen_beckmann;
+pub mod ltc_fit;
 pub mod ndf;
 pub mod preintegrated_skin;
 pub mod profile;
@@ -68,6 +69,9 @@ pub enum TexelError {
         /// The value.
         value: f64,
     },
+    /// A lobe without width has no matrix.
+    #[error("the model is a mirror here, a lobe without width; keep the axis off it with `clamp`")]
+    NoWidth,
     /// The model refuses its parameters here.
     #[error(transparent)]
     Param(#[from] crate::models::ParamError),

@@ -105,3 +105,68 @@ fn clip(polygon: &[DVec3]) -> Vec<DVec3> {
     }
     out
 }
+
+/// The inverse matrix `M⁻¹ = [[m11, 0, m13], [0, m22, 0], [m31, 0, m33]]`, the form that a shader multiplies with.
+///
+/// The view direction lies in the xz plane, at positive x. Only ratios matter. It holds lobes that [`Ltc`] does not:
+/// those whose axis points below the horizon. Domain: m22 > 0 and m11 m33 − m13 m31 > 0 (no mirror image).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inverse {
+    /// Row x, column x.
+    pub m11: f64,
+    /// Row x, column z.
+    pub m13: f64,
+    /// Row y, column y.
+    pub m22: f64,
+    /// Row z, column x.
+    pub m31: f64,
+    /// Row z, column z.
+    pub m33: f64,
+}
+
+impl Inverse {
+    /// The clamped cosine itself.
+    pub const COSINE: Inverse = Inverse { m11: 1.0, m13: 0.0, m22: 1.0, m31: 0.0, m33: 1.0 };
+
+    /// m11 m33 − m13 m31: the determinant over m22.
+    #[must_use]
+    pub fn minor(&self) -> f64 {
+        self.m11 * self.m33 - self.m13 * self.m31
+    }
+
+    /// `M⁻¹ w`.
+    #[must_use]
+    pub fn apply(&self, w: DVec3) -> DVec3 {
+        DVec3::new(self.m11 * w.x + self.m13 * w.z, self.m22 * w.y, self.m31 * w.x + self.m33 * w.z)
+    }
+
+    /// `M v`, times [`Inverse::minor`].
+    #[must_use]
+    pub fn undo(&self, v: DVec3) -> DVec3 {
+        let y = v.y * (self.minor() / self.m22);
+        DVec3::new(self.m33 * v.x - self.m13 * v.z, y, self.m11 * v.z - self.m31 * v.x)
+    }
+
+    /// Density over directions; see [`Ltc::density`].
+    ///
+    /// Source: [Heitz2016](crate::cite::HEITZ_2016) Eqs. 1 and 3. Units: sr⁻¹. Domain: `w` unit. Range: ≥ 0, finite.
+    /// Guard: a matrix outside its domain gives 0. Accuracy: that of [`Ltc::density`] (`tests/ltc.rs`).
+    #[must_use]
+    pub fn density(&self, w: DVec3) -> f64 {
+        let (det, v) = (self.minor() * self.m22, self.apply(w));
+        let square = v.length_squared();
+        if v.z > 0.0 && det > 0.0 && self.m22 > 0.0 { FRAC_1_PI * det * v.z / (square * square) } else { 0.0 }
+    }
+
+    /// The same lobe with another scale: every entry times `factor`.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Inverse {
+        Inverse {
+            m11: self.m11 * factor,
+            m13: self.m13 * factor,
+            m22: self.m22 * factor,
+            m31: self.m31 * factor,
+            m33: self.m33 * factor,
+        }
+    }
+}

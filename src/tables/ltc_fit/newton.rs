@@ -1,0 +1,138 @@
+//! Newton's method with a damped Hessian (Levenberg and Marquardt's damping), in four, two or one parameters.
+//!
+//! Each step multiplies the inverse matrix from the left by P (see [`objective`](super::objective)) and starts anew from
+//! there, so a step is relative to the lobe's own widths. The sets of matrices of every [`Family`] are closed under their steps.
+
+use super::Family;
+use super::objective::{N, Objective, objective};
+use super::target::Node;
+use crate::terms::ltc::Inverse;
+
+/// Most evaluations of the objective.
+const EVALUATIONS: usize = 60;
+
+/// Longest step in a parameter.
+const LONGEST: f64 = 0.4;
+
+/// Steps shorter than this end the search; the next one would be its square.
+const SHORTEST: f64 = 1e-7;
+
+/// Damping relative to the diagonal: at the start, and where the search gives up.
+const DAMPING: [f64; 2] = [1e-3, 1e10];
+
+/// The end of a search.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Optimum {
+    pub(super) inverse: Inverse,
+    pub(super) value: f64,
+    pub(super) evaluations: u32,
+}
+
+/// `P M^-1`, its middle entry brought back to 1.
+pub(super) fn step(b: &Inverse, d: [f64; N]) -> Inverse {
+    let m22 = (1.0 + d[1]) * b.m22;
+    Inverse {
+        m11: (1.0 + d[0]) * b.m11 + d[2] * b.m31,
+        m13: (1.0 + d[0]) * b.m13 + d[2] * b.m33,
+        m22,
+        m31: d[3] * b.m11 + b.m31,
+        m33: d[3] * b.m13 + b.m33,
+    }
+    .scaled(1.0 / m22)
+}
+
+/// The nearest local minimum below `start`.
+pub(super) fn minimise(nodes: &[Node], start: Inverse, family: Family) -> Optimum {
+    let mut inverse = start.scaled(1.0 / start.m22);
+    let mut here = objective(nodes, &inverse);
+    let mut damping = DAMPING[0];
+    let mut evaluations = 1;
+    while evaluations < EVALUATIONS && damping < DAMPING[1] {
+        let Some(d) = direction(&here, family, damping) else {
+            damping *= 10.0;
+            continue;
+        };
+        let length = d.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        let next = step(&inverse, d);
+        let there = objective(nodes, &next);
+        evaluations += 1;
+        // NaN is no improvement
+        if next.minor() > 0.0 && next.m22 > 0.0 && there.value <= here.value {
+            (inverse, here) = (next, there);
+            damping *= 0.1;
+            if length < SHORTEST {
+                break;
+            }
+        } else {
+            if length < SHORTEST {
+                break;
+            }
+            damping = (damping * 10.0).max(1e-3);
+        }
+    }
+    let evaluations = u32::try_from(evaluations * nodes.len()).unwrap_or(u32::MAX);
+    Optimum { inverse, value: here.value, evaluations }
+}
+
+/// The damped Newton step, no longer than [`LONGEST`]; `None` if the damped Hessian is not positive.
+fn direction(at: &Objective, family: Family, damping: f64) -> Option<[f64; N]> {
+    let basis = family.basis();
+    let k = basis.len();
+    let (mut h, mut g) = ([[0.0; N]; N], [0.0; N]);
+    for (i, u) in basis.iter().enumerate() {
+        for a in 0..N {
+            g[i] -= u[a] * at.gradient[a];
+            for (j, v) in basis.iter().enumerate() {
+                h[i][j] += (0..N).map(|b| u[a] * at.hessian[a][b] * v[b]).sum::<f64>();
+            }
+        }
+    }
+    for (i, row) in h.iter_mut().enumerate().take(k) {
+        row[i] += damping * row[i].abs().max(f64::MIN_POSITIVE);
+    }
+    let x = solve(&mut h, g, k)?;
+    let mut d = [0.0; N];
+    for (u, x) in basis.iter().zip(&x) {
+        for (d, u) in d.iter_mut().zip(u) {
+            *d += x * u;
+        }
+    }
+    let length = d.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    if length > LONGEST {
+        d.iter_mut().for_each(|x| *x *= LONGEST / length);
+    }
+    length.is_finite().then_some(d)
+}
+
+/// Solves `h x = g` in the first `k` entries by Cholesky's factors; `None` if h is not positive.
+fn solve(h: &mut [[f64; N]; N], mut x: [f64; N], k: usize) -> Option<[f64; N]> {
+    for i in 0..k {
+        for j in 0..=i {
+            let mut sum = h[i][j];
+            for m in 0..j {
+                sum -= h[i][m] * h[j][m];
+            }
+            if i == j {
+                if sum <= 0.0 || sum.is_nan() {
+                    return None;
+                }
+                h[i][i] = sum.sqrt();
+            } else {
+                h[i][j] = sum / h[j][j];
+            }
+        }
+    }
+    for i in 0..k {
+        for j in 0..i {
+            x[i] -= h[i][j] * x[j];
+        }
+        x[i] /= h[i][i];
+    }
+    for i in (0..k).rev() {
+        for j in i + 1..k {
+            x[i] -= h[j][i] * x[j];
+        }
+        x[i] /= h[i][i];
+    }
+    Some(x)
+}
