@@ -45,7 +45,8 @@ fn explore() {
         // M row-major -> inverse
         let mm = &refit[k9..k9 + 9];
         let d = mm[0] * mm[8] - mm[2] * mm[6];
-        let re = Inverse { m11: mm[8] / d, m13: -mm[2] / d, m31: -mm[6] / d, m33: mm[0] / d, m22: 1.0 / mm[4] };
+        let re =
+            Inverse { m11: mm[8] / d, m13: -mm[2] / d, m31: -mm[6] / d, m33: mm[0] / d, m22: 1.0 / mm[4] };
         let re = re.scaled(1.0 / re.m22);
         let o = ltc_fit::judge(&**m, (*mu).into(), &f.fit.inverse, level).unwrap();
         let s = ltc_fit::judge(&**m, (*mu).into(), &ship, level).unwrap();
@@ -59,11 +60,28 @@ fn explore() {
         evals += u64::from(f.evaluations);
         let e = f.fit.inverse;
         let c = f.coarse.inverse;
-        let diff = [e.m11 - c.m11, e.m13 - c.m13, e.m31 - c.m31, e.m33 - c.m33].iter().fold(0.0, |m: f64, d| m.max(d.abs()));
+        let diff = [e.m11 - c.m11, e.m13 - c.m13, e.m31 - c.m31, e.m33 - c.m33]
+            .iter()
+            .fold(0.0, |m: f64, d| m.max(d.abs()));
         let best = s.l3.min(r.l3);
         if o.l3 > best * (1.0 + 1e-6) || diff > 2.4e-4 {
-            if o.l3 > best * (1.0 + 1e-6) { worse += 1; }
-            println!("{t} {a} mu {mu:.4} alpha {alpha:.5} ours {:.4e} (own {:.4e}) shipped {:.4e} refit {:.4e}, tv {:.4} {:.4}; diff {diff:.1e} n {} [{:.5} {:.5} {:.5} {:.6}] {q:?}", o.l3, f.fit.l3, s.l3, r.l3, o.variation, s.variation, f.evaluations, e.m11, e.m31, e.m13, e.m33);
+            if o.l3 > best * (1.0 + 1e-6) {
+                worse += 1;
+            }
+            println!(
+                "{t} {a} mu {mu:.4} alpha {alpha:.5} ours {:.4e} (own {:.4e}) shipped {:.4e} refit {:.4e}, tv {:.4} {:.4}; diff {diff:.1e} n {} [{:.5} {:.5} {:.5} {:.6}] {q:?}",
+                o.l3,
+                f.fit.l3,
+                s.l3,
+                r.l3,
+                o.variation,
+                s.variation,
+                f.evaluations,
+                e.m11,
+                e.m31,
+                e.m13,
+                e.m33
+            );
         }
     }
     println!("worse {worse}, {stats:?} evals/texel {}", evals / 4096);

@@ -12,7 +12,7 @@ use super::sweep::Sweep;
 use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
-use crate::integrate::{Estimate, MAX_CHANNELS};
+use crate::integrate::{Estimate, MAX_CHANNELS, Sums};
 use crate::models::{self, Brdf, ModelInfo, Params};
 use crate::terms::schlick;
 
@@ -23,6 +23,13 @@ const BIAS: ChannelInfo = ChannelInfo { id: "dfg.bias", meaning: "int (f/F) Fc m
 const FC: ChannelInfo = ChannelInfo { id: "dfg.fc", meaning: "int (f/F) Fc mu_i dwi", range: UNIT };
 const TOTAL: ChannelInfo =
     ChannelInfo { id: "dfg.total", meaning: "int (f/F) mu_i dwi = E(mu, alpha), white", range: UNIT };
+const LOSS: ChannelInfo =
+    ChannelInfo { id: "dfg.loss", meaning: "1 - int (f/F) mu_i dwi = 1 - E", range: UNIT };
+const REST: ChannelInfo = ChannelInfo {
+    id: "dfg.rest",
+    meaning: "int (f/F) (Fc - (1 - mu)^5) mu_i dwi: bias without what a mirror of the same albedo has",
+    range: [-1.0, 1.0],
+};
 const F82: ChannelInfo = ChannelInfo {
     id: "dfg.f82",
     meaning: "int (f/F) v (1 - v)^6 / (1/7 (6/7)^6) mu_i dwi, v = wo.wh",
@@ -63,6 +70,11 @@ pub static INFO: TableInfo = TableInfo {
             id: "multiscatter",
             doc: "specular = mix(fc, total, F0), F90 = 1; energy compensation 1 + F0 (1 / total - 1)",
             channels: &[FC, TOTAL],
+        },
+        Layout {
+            id: "factored",
+            doc: "E = 1 - loss, bias = E (1 - mu)^5 + rest, scale = E - bias; both channels are smooth where a mirror begins",
+            channels: &[LOSS, REST],
         },
         Layout {
             id: "f82",
@@ -113,6 +125,10 @@ pub(super) fn view_and_roughness(len: usize) -> Vec<Axis> {
 enum Part {
     /// A functional of the table's model, and its factor.
     Split(Functional, f64),
+    /// 1 - E.
+    Loss,
+    /// The Schlick-weighted integral without (1 - mu)^5 E.
+    Rest,
     /// The albedo of the cloth, or of the diffuse lobe.
     Lobe(Lobe),
 }
@@ -140,14 +156,31 @@ struct Dfg {
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     let parts: Vec<Part> = spec.layout.ids().map(part).collect();
-    let functional = |p: &Part| if let Part::Split(g, _) = p { Some(*g) } else { None };
-    let functionals = parts.iter().filter_map(functional).collect();
+    let mut functionals = Vec::new();
+    for needed in parts.iter().flat_map(Part::functionals) {
+        if !functionals.contains(&needed) {
+            functionals.push(needed);
+        }
+    }
     let (sweep, alpha) = (Sweep::new(spec, true)?, spec.coordinate("alpha")?);
     Ok(Box::new(Dfg { sweep, parts, functionals, alpha }))
 }
 
+impl Part {
+    fn functionals(&self) -> Vec<Functional> {
+        match self {
+            Part::Split(g, _) => vec![*g],
+            Part::Loss => vec![Functional::One],
+            Part::Rest => vec![Functional::Schlick, Functional::One],
+            Part::Lobe(_) => Vec::new(),
+        }
+    }
+}
+
 fn part(channel: &str) -> Part {
     match channel {
+        "dfg.loss" => Part::Loss,
+        "dfg.rest" => Part::Rest,
         "dfg.scale" => Part::Split(Functional::SchlickComplement, 1.0),
         "dfg.bias" | "dfg.fc" => Part::Split(Functional::Schlick, 1.0),
         "dfg.f82" => Part::Split(Functional::F82, 1.0),
@@ -167,21 +200,43 @@ impl Lobe {
     }
 }
 
+impl Dfg {
+    /// Loss and rest, in this order and alone.
+    fn factored(&self) -> bool {
+        matches!(self.parts[..], [Part::Loss, Part::Rest])
+    }
+}
+
 impl Baker for Dfg {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
         let view = self.sweep.view(at);
         let mut all = Estimate { value: [0.0; MAX_CHANNELS], error: [0.0; MAX_CHANNELS], evaluations: 0 };
         let mut split = all;
         if !self.functionals.is_empty() {
-            split = integrate(&*self.sweep.model(at)?, view, &self.functionals, tolerance)?;
+            // the rest adds two errors
+            let twice = self.parts.iter().any(|p| matches!(p, Part::Rest));
+            let share = if twice { 0.5 * tolerance } else { tolerance };
+            split = integrate(&*self.sweep.model(at)?, view, &self.functionals, share)?;
             all.evaluations = split.evaluations;
         }
-        let mut next = 0;
+        let of = |g: Functional| {
+            let i = self.functionals.iter().position(|f| *f == g).unwrap_or(0);
+            (split.value[i], split.error[i])
+        };
         for (c, part) in self.parts.iter().enumerate() {
             (all.value[c], all.error[c]) = match part {
-                Part::Split(_, factor) => {
-                    next += 1;
-                    (factor * split.value[next - 1], factor * split.error[next - 1])
+                Part::Split(g, factor) => {
+                    let (value, error) = of(*g);
+                    (factor * value, factor * error)
+                }
+                Part::Loss => {
+                    let (value, error) = of(Functional::One);
+                    (1.0 - value, error)
+                }
+                Part::Rest => {
+                    let ((fc, fc_error), (one, one_error)) = (of(Functional::Schlick), of(Functional::One));
+                    let mirror = schlick::weight(view.mu);
+                    (fc - mirror * one, fc_error + mirror * one_error)
                 }
                 Part::Lobe(lobe) => {
                     let model = lobe.build(at[self.alpha])?;
@@ -193,6 +248,18 @@ impl Baker for Dfg {
             };
         }
         Ok(all)
+    }
+
+    fn decoded(&self) -> Option<&'static [ChannelInfo]> {
+        self.factored().then_some(&[SCALE, BIAS])
+    }
+
+    fn decode(&self, at: &[f64], values: &mut Sums) {
+        if self.factored() {
+            let (albedo, mirror) = (1.0 - values[0], schlick::weight(self.sweep.mu(at)));
+            let bias = albedo * mirror + values[1];
+            (values[0], values[1]) = (albedo - bias, bias);
+        }
     }
 
     fn rule(&self) -> String {

@@ -55,6 +55,15 @@ pub trait Baker: Send + Sync {
 
     /// The rule in words, for metadata.
     fn rule(&self) -> String;
+
+    /// What a shader makes of the channels, where that is not the channels themselves: what errors of reading are
+    /// measured on.
+    fn decoded(&self) -> Option<&'static [ChannelInfo]> {
+        None
+    }
+
+    /// Turns the channels at a point into [`Baker::decoded`], in place.
+    fn decode(&self, _at: &[f64], _values: &mut crate::integrate::Sums) {}
 }
 
 /// Why a texel has no value. The driver adds where.

@@ -62,7 +62,7 @@ fn functional(channel: &str) -> Option<Functional> {
         "dfg.scale" => Some(Functional::SchlickComplement),
         "dfg.bias" | "dfg.fc" => Some(Functional::Schlick),
         "dfg.f82" => Some(Functional::F82),
-        "dfg.total" | "e" => Some(Functional::One),
+        "dfg.total" | "dfg.loss" | "e" => Some(Functional::One),
         _ => None,
     }
 }
@@ -83,7 +83,8 @@ fn check(case: &Case<'_>) -> Outcome {
             let Some(g) = functional(&channel.id) else { continue };
             let [s] = estimate(&*model, view, [g], 0x51ed + i as u64, REPLICATES, POINTS);
             let k = texel * case.table.channels.len() + c;
-            let (v, e) = (case.table.values[k], case.table.errors[k]);
+            let (stored, e) = (case.table.values[k], case.table.errors[k]);
+            let v = if channel.id == "dfg.loss" { 1.0 - stored } else { stored };
             outcome.tighten(6.0 * s.standard_error + e + UNSEEN - (v - s.mean).abs(), || {
                 format!(
                     "{} = {v:.6} against {:.6} +- {:.1e}, {}",

@@ -1,4 +1,4 @@
-//! Every value is finite and not negative.
+//! Every value is finite, and not negative where its channel has no negative range.
 
 use super::{Case, Law, Outcome};
 use crate::tables::place;
@@ -6,7 +6,7 @@ use crate::tables::place;
 /// The law.
 pub static LAW: Law = Law {
     id: "finite",
-    statement: "every value is finite and not negative, within its error",
+    statement: "every value is finite, and not negative unless its channel can be, within its error",
     margin: "smallest value plus its error estimate",
     code: 4001,
     check,
@@ -16,7 +16,12 @@ fn check(case: &Case<'_>) -> Outcome {
     let mut outcome = Outcome::start();
     let channels = case.table.channels.len();
     for (i, (&v, &e)) in case.table.values.iter().zip(&case.table.errors).enumerate() {
-        let margin = if v.is_finite() { v + e } else { f64::NEG_INFINITY };
+        let signed = case.table.channels[i % channels].range[0] < 0.0;
+        let margin = match v.is_finite() {
+            false => f64::NEG_INFINITY,
+            true if signed => e,
+            true => v + e,
+        };
         outcome.tighten(margin, || {
             format!("{}, {}", case.table.channels[i % channels].id, place(&case.table.grid, i / channels))
         });

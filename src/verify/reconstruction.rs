@@ -11,7 +11,7 @@ use crate::grid::provenance::{Reconstruction, Spread};
 use crate::grid::table::{Extreme, named};
 use crate::grid::{Grid, Texel, lookup};
 use crate::integrate::{MAX_CHANNELS, Sums};
-use crate::tables::Bound;
+use crate::tables::{Bound, ChannelInfo};
 use rayon::prelude::*;
 
 /// Least view cosine of the practical domain.
@@ -93,11 +93,17 @@ impl<'a> Probe<'a> {
         }
     }
 
+    /// What the errors are measured on.
+    fn channels(&self) -> &[ChannelInfo] {
+        self.bound.baker.decoded().unwrap_or(&self.bound.spec.layout.channels)
+    }
+
     fn integrate(&self, points: &[[f64; MAX_AXES]]) -> Vec<Fresh> {
         let fresh = |x: &[f64; MAX_AXES]| {
             let point = self.bound.spec.grid.at_coordinates(x);
-            let estimate = self.bound.baker.texel(point.values(), self.tolerance).ok()?;
-            Some(Fresh { x: *x, point, value: estimate.value })
+            let mut value = self.bound.baker.texel(point.values(), self.tolerance).ok()?.value;
+            self.bound.baker.decode(point.values(), &mut value);
+            Some(Fresh { x: *x, point, value })
         };
         points.par_iter().filter_map(fresh).collect()
     }
@@ -110,6 +116,8 @@ impl<'a> Probe<'a> {
         let channels = self.bound.spec.layout.channels.len();
         let mut read = [0.0; MAX_CHANNELS];
         lookup::read(&self.bound.spec.grid, stored, &fresh.point, &mut read[..channels]);
+        self.bound.baker.decode(fresh.point.values(), &mut read);
+        let channels = self.channels().len();
         let mut result = Compared { fresh, largest: 0.0, channel: 0, sum: 0.0 };
         for (c, (r, f)) in read[..channels].iter().zip(&fresh.value).enumerate() {
             let error = (r - f).abs();
@@ -129,7 +137,7 @@ impl<'a> Probe<'a> {
         searched: &[Compared<'_>],
         inside: impl Fn(&Point) -> bool,
     ) -> Option<Spread> {
-        let channels = &self.bound.spec.layout.channels;
+        let channels = self.channels();
         let (mut sum, mut n) = (0.0, 0.0);
         for c in regular.iter().filter(|c| inside(&c.fresh.point)) {
             sum += c.sum;

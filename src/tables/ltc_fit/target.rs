@@ -52,7 +52,8 @@ impl<'a> Target<'a> {
     fn gather(&mut self, own: usize) {
         let (parts, nodes) = (&self.parts, &mut self.nodes);
         let chart = parts[own].1.chart().unwrap_or(Chart::Broad { kinks: true });
-        let (mut values, mut sum, mut cubes, mut mine) = ([0.0; BATCH], [0.0; BATCH], [0.0; BATCH], [0.0; BATCH]);
+        let (mut values, mut sum, mut cubes, mut mine) =
+            ([0.0; BATCH], [0.0; BATCH], [0.0; BATCH], [0.0; BATCH]);
         chart.visit(self.view, self.level, &mut |batch| {
             sum.fill(0.0);
             cubes.fill(0.0);
