@@ -100,9 +100,14 @@ fn unorm16_has_every_code_and_nothing_beyond_its_range() {
 #[test]
 fn default_tolerances_are_half_a_step_below_one() {
     let steps = STORAGES.iter().map(|s| s.default_tolerance()).collect::<Vec<_>>();
-    assert_eq!(steps, [1.0 / 4096.0, 1.0 / 33554432.0, 0.5 / 65535.0]);
+    let codes = [0.5 / 255.0, 0.5 / 65535.0, 0.5 / 1023.0];
+    assert_eq!(steps[..3], [1.0 / 4096.0, 1.0 / 33554432.0, 1e-9]);
+    assert_eq!(steps[3..6], codes);
+    assert_eq!(steps[6..9], [1.0 / 256.0, 1.0 / 1024.0, 1.0 / 512.0]);
     for storage in STORAGES {
-        assert_eq!(storage.ulp(0.75, UNIT), 2.0 * storage.default_tolerance());
+        if !matches!(storage, Storage::Double | Storage::R11g11b10 | Storage::Rgbd) {
+            assert_eq!(storage.ulp(0.75, UNIT), 2.0 * storage.default_tolerance());
+        }
         assert_eq!(Storage::find(storage.id()), Some(*storage));
     }
 }
@@ -139,19 +144,25 @@ fn a_table_names_the_texel_that_does_not_fit() {
 #[test]
 fn every_container_gives_back_every_bit() {
     let names = ["dfg.scale", "dfg.bias", "a", "z.cloth"];
-    for encoder in ENCODERS {
+    for encoder in ENCODERS.iter().filter(|e| !e.magic().is_empty()) {
         for &storage in encoder.storages() {
-            for n in 1..=names.len() {
+            let most = encoder.most_channels().min(storage.most_channels().unwrap_or(4)).min(4);
+            for n in 1..=most {
                 let t = table(&names[..n], hard(storage));
                 let p = provenance(&t, storage);
                 let rounded = quantise_table(&t, storage).unwrap().values;
                 let image = read_bytes(&file(*encoder, &t, storage, &p)).unwrap();
                 assert_eq!((image.format, image.width, image.height), (encoder.id(), 7, 5));
-                assert_eq!(image.channels.len(), n);
-                assert_eq!(image.known(), Some(&p));
-                assert_eq!(image.contradictions(), Vec::<String>::new());
+                assert!(image.channels.len() == n || !encoder.holds_metadata());
+                if encoder.holds_metadata() {
+                    assert_eq!(image.known(), Some(&p));
+                    assert_eq!(image.contradictions(), Vec::<String>::new());
+                } else if storage.is_bounded() || storage == Storage::Rgbd || image.channels.len() != n {
+                    // without metadata the components have neither names nor meaning
+                    continue;
+                }
                 for (c, name) in names[..n].iter().enumerate() {
-                    let plane = image.channel(name).unwrap();
+                    let plane = image.channel(name).unwrap_or(&image.channels[c]);
                     assert_eq!(plane.sample.id(), storage.id());
                     let bits = |v: &f64| v.to_bits();
                     let expected: Vec<u64> = rounded.iter().skip(c).step_by(n).map(bits).collect();
@@ -177,7 +188,9 @@ fn rows_run_down_and_slices_are_stacked() {
             grid: &grid,
             channels: &channels,
             values: &values,
+            errors: &[],
             storage: Storage::Half,
+            options: &[],
             provenance_json: "{}",
         };
         let image = read_bytes(&encoder("exr").unwrap().encode(&input).unwrap()).unwrap();
@@ -201,14 +214,16 @@ fn the_same_table_gives_the_same_bytes() {
 fn metadata_is_utf8_and_alone() {
     let t = table(&["v"], |_, x| x);
     let text = "{\"formula\": \"∫ D cosθ dω ≤ 1\"}";
-    for encoder in ENCODERS {
+    for encoder in ENCODERS.iter().filter(|e| e.holds_metadata()) {
         let storage = encoder.storages()[0];
         let values = quantise_table(&t, storage).unwrap().values;
         let input = EncodeInput {
             grid: &t.grid,
             channels: &t.channels,
             values: &values,
+            errors: &[],
             storage,
+            options: &[],
             provenance_json: text,
         };
         let bytes = encoder.encode(&input).unwrap();
@@ -254,17 +269,19 @@ fn containers_refuse_what_they_cannot_hold() {
         grid: &t.grid,
         channels: &t.channels[..1],
         values: &values[..35],
+        errors: &[],
         storage: Storage::Unorm16,
+        options: &[],
         provenance_json: "{}",
     };
     let (png, exr) = (encoder("png").unwrap(), encoder("exr").unwrap());
     let message = |e: Result<Vec<u8>, EncodeError>| e.unwrap_err().to_string();
     assert!(png.encode(&good).is_ok());
     let many = EncodeInput { channels: &t.channels, values: &values, ..good };
-    assert_eq!(message(png.encode(&many)), "png cannot hold 5 channels; it holds 1 to 4");
+    assert_eq!(message(png.encode(&many)), "png:unorm16 cannot hold 5 channels; it holds 1 to 4");
     assert_eq!(message(exr.encode(&good)), "exr cannot store unorm16; it can store half, float");
     let none = EncodeInput { channels: &[], values: &[], ..good };
-    assert_eq!(message(png.encode(&none)), "png cannot hold 0 channels; it holds 1 to 4");
+    assert_eq!(message(png.encode(&none)), "png:unorm16 cannot hold 0 channels; it holds 1 to 4");
     let short = EncodeInput { values: &values[..34], ..good };
     assert_eq!(message(png.encode(&short)), "34 values for 35 texels of 1 channels");
     let mut raw = values[..35].to_vec();

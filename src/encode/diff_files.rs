@@ -186,7 +186,7 @@ fn load(path: &Path) -> Result<Vec<u8>, DiffError> {
 fn compare(paths: [&Path; 2], bytes: [&[u8]; 2], tolerance: Tolerance) -> Result<FileDiff, DiffError> {
     let extension = |p: &Path| p.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     let [a, b] = paths.map(|p| extension(p).unwrap_or_default());
-    let picture = |e: &str| super::ENCODERS.iter().any(|encoder| encoder.extension() == e);
+    let picture = |e: &str| super::ENCODERS.iter().any(|c| !c.magic().is_empty() && c.extension() == e);
     if picture(&a) && picture(&b) {
         let image = |i: usize| {
             read::read_bytes(bytes[i]).map_err(|source| DiffError::Read { path: paths[i].to_owned(), source })

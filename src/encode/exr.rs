@@ -7,7 +7,7 @@
 //! crate keeps custom attributes in a `HashMap` with a random seed, so that two of them make the bytes differ from run
 //! to run. The line order is fixed to increasing for the same reason.
 
-use super::{EncodeError, EncodeInput, Encoder, Storage};
+use super::{EncodeError, EncodeInput, Encoder, Image as Picture, ReadError, Storage};
 use crate::grid::provenance::ATTRIBUTE;
 use ::exr::image::write::WritableImage;
 use ::exr::prelude::{
@@ -39,13 +39,21 @@ impl Encoder for Exr {
         &[Storage::Half, Storage::Float]
     }
 
+    fn most_channels(&self) -> usize {
+        1024
+    }
+
+    fn magic(&self) -> &'static [&'static [u8]] {
+        &[&[0x76, 0x2f, 0x31, 0x01]]
+    }
+
+    fn read(&self, bytes: &[u8]) -> Result<Picture, ReadError> {
+        super::exr_read::read(bytes)
+    }
+
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
-        input.check(self, 1024)?;
+        input.check(self)?;
         let [width, height] = input.size();
-        let limit = 1 << 24;
-        if width > limit || height > limit {
-            return Err(EncodeError::Size { format: self.id(), width, height, limit });
-        }
         let channels = AnyChannels::sort(
             input
                 .channels

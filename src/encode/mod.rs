@@ -29,7 +29,9 @@
 //!     grid: &table.grid,
 //!     channels: &table.channels,
 //!     values: &rounded.values,
+//!     errors: &[],
 //!     storage: Storage::Half,
+//!     options: &[],
 //!     provenance_json: "{}",
 //! })?;
 //! assert_eq!(read::read_bytes(&bytes)?.channels[0].values, rounded.values);
@@ -40,17 +42,30 @@
 //! One file, one `pub mod` line, one line in [`ENCODERS`].
 
 pub mod atomic;
+mod coding;
+pub mod csv;
+pub mod dds;
+mod dds_read;
+mod dfd;
 pub mod diff;
 pub mod diff_files;
 pub mod diff_json;
 pub mod exr;
 mod exr_read;
+pub mod hdr;
+pub mod ktx2;
+mod ktx2_read;
+pub mod npy;
+pub mod option;
 pub mod png;
 mod png_read;
+pub mod raw;
 pub mod read;
 pub mod storage;
+mod texels;
 
 pub use diff::{ImageDiff, Tolerance};
+pub use option::{FILE_OPTIONS, FileOption, Shape};
 pub use read::{Image, ReadError};
 pub use storage::{Quantised, RangeFault, Storage, quantise_table};
 
@@ -65,6 +80,43 @@ pub trait Encoder: Debug + Send + Sync {
     fn extension(&self) -> &'static str;
     /// What it can store.
     fn storages(&self) -> &'static [Storage];
+    /// Options that it takes.
+    fn options(&self) -> &'static [FileOption] {
+        &[]
+    }
+    /// Most channels that it holds.
+    fn most_channels(&self) -> usize;
+    /// Components of a pixel that holds a table of this shape; those beyond its channels are filled.
+    fn components(&self, shape: &Shape<'_>) -> usize {
+        shape.channels
+    }
+    /// Checks the lengths of the axes.
+    ///
+    /// # Errors
+    /// [`EncodeError::Size`] or another one that does not depend on the values.
+    fn check_size(&self, shape: &Shape<'_>) -> Result<(), EncodeError> {
+        let [width, height, slices] = shape.extent();
+        let (height, limit) = (height * slices, 1 << 24);
+        if width > limit || height > limit {
+            return Err(EncodeError::Size { format: self.id(), width, height, limit });
+        }
+        Ok(())
+    }
+    /// True if the file has a place for the provenance.
+    fn holds_metadata(&self) -> bool {
+        true
+    }
+    /// How its files begin; empty if they cannot be told apart or are not read.
+    fn magic(&self) -> &'static [&'static [u8]] {
+        &[]
+    }
+    /// Reads a file that begins with [`Encoder::magic`].
+    ///
+    /// # Errors
+    /// [`ReadError`] for a file that is damaged or of a kind that is not supported.
+    fn read(&self, bytes: &[u8]) -> Result<Image, ReadError> {
+        Err(ReadError::Unknown(bytes.iter().copied().take(8).collect()))
+    }
     /// Makes the bytes of the file. The same input gives the same bytes.
     ///
     /// # Errors
@@ -73,12 +125,19 @@ pub trait Encoder: Debug + Send + Sync {
 }
 
 /// Every container.
-pub static ENCODERS: &[&dyn Encoder] = &[&exr::Exr, &png::Png];
+pub static ENCODERS: &[&dyn Encoder] =
+    &[&exr::Exr, &ktx2::Ktx2, &dds::Dds, &png::Png, &hdr::Hdr, &npy::Npy, &raw::Raw, &csv::Csv];
 
 /// Looks a container up by its id.
 #[must_use]
 pub fn encoder(id: &str) -> Option<&'static dyn Encoder> {
     ENCODERS.iter().copied().find(|e| e.id() == id)
+}
+
+/// Ids of the containers that are read.
+#[must_use]
+pub fn readable() -> Vec<&'static str> {
+    ENCODERS.iter().filter(|e| !e.magic().is_empty()).map(|e| e.id()).collect()
 }
 
 /// What goes into a file.
@@ -90,8 +149,12 @@ pub struct EncodeInput<'a> {
     pub channels: &'a [Channel],
     /// Values as rounded by [`quantise_table`], `[texel][channel]`.
     pub values: &'a [f64],
+    /// Estimated integration errors, `[texel][channel]`; empty if they are not known. Only CSV holds them.
+    pub errors: &'a [f64],
     /// How they are stored.
     pub storage: Storage,
+    /// Options of the output.
+    pub options: &'a [FileOption],
     /// The provenance as JSON text.
     pub provenance_json: &'a str,
 }
@@ -116,11 +179,31 @@ pub enum EncodeError {
         /// What it can store.
         allowed: String,
     },
+    /// The container does not take this option.
+    #[error("{format} does not take option `{option}`; it takes {allowed}")]
+    Option {
+        /// Container id.
+        format: &'static str,
+        /// The option.
+        option: &'static str,
+        /// The options that it takes.
+        allowed: String,
+    },
+    /// Two options, or an option and a storage, that exclude each other.
+    #[error("`{a}` and `{b}` exclude each other")]
+    Conflict {
+        /// One.
+        a: &'static str,
+        /// The other.
+        b: &'static str,
+    },
     /// No channels, or more than the container holds.
-    #[error("{format} cannot hold {count} channels; it holds 1 to {limit}")]
+    #[error("{format}:{storage} cannot hold {count} channels; it holds 1 to {limit}")]
     Channels {
         /// Container id.
         format: &'static str,
+        /// Storage id.
+        storage: &'static str,
         /// Number of channels.
         count: usize,
         /// Most that it holds.
@@ -186,17 +269,16 @@ impl EncodeInput<'_> {
         [x, y * z]
     }
 
+    /// What the container has to hold, apart from the values.
+    #[must_use]
+    pub fn shape(&self) -> Shape<'_> {
+        Shape { grid: self.grid, channels: self.channels.len(), storage: self.storage, options: self.options }
+    }
+
     /// Checks everything that does not depend on how the container lays out its bytes.
-    fn check(&self, encoder: &dyn Encoder, most: usize) -> Result<(), EncodeError> {
-        let format = encoder.id();
+    fn check(&self, encoder: &dyn Encoder) -> Result<(), EncodeError> {
+        self.shape().check(encoder)?;
         let n = self.channels.len();
-        if !encoder.storages().contains(&self.storage) {
-            let allowed = encoder.storages().iter().map(|s| s.id()).collect::<Vec<_>>().join(", ");
-            return Err(EncodeError::Storage { format, storage: self.storage.id(), allowed });
-        }
-        if n == 0 || n > most {
-            return Err(EncodeError::Channels { format, count: n, limit: most });
-        }
         for (i, channel) in self.channels.iter().enumerate() {
             let id = &channel.id;
             let twice = self.channels[..i].iter().any(|c| c.id == *id);
@@ -219,14 +301,18 @@ impl EncodeInput<'_> {
     /// Every value must be its own rounded form, bit for bit.
     fn check_values(&self) -> Result<(), EncodeError> {
         let n = self.channels.len();
-        for (i, &value) in self.values.iter().enumerate() {
-            let channel = &self.channels[i % n];
-            let same = |v: f64| v.to_bits() == value.to_bits();
-            if !self.storage.quantise(value, channel.range).is_ok_and(same) {
+        let mut rounded = vec![0.0; n];
+        for (t, texel) in self.values.chunks_exact(n).enumerate() {
+            rounded.copy_from_slice(texel);
+            let fault = match self.storage.quantise_texel(&mut rounded, |c| self.channels[c].range) {
+                Ok(()) => rounded.iter().zip(texel).position(|(a, b)| a.to_bits() != b.to_bits()),
+                Err((c, _)) => Some(c.min(n - 1)),
+            };
+            if let Some(c) = fault {
                 return Err(EncodeError::NotQuantised {
-                    texel: i / n,
-                    channel: channel.id.clone(),
-                    value,
+                    texel: t,
+                    channel: self.channels[c].id.clone(),
+                    value: texel[c],
                     storage: self.storage.id(),
                 });
             }

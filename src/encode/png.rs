@@ -1,4 +1,4 @@
-//! PNG: 16-bit codes over the range of each channel.
+//! PNG: 8-bit or 16-bit codes over the range of each channel, or 8-bit RGBD.
 //!
 //! | channels | colour type | samples |
 //! |---|---|---|
@@ -6,26 +6,25 @@
 //! | 2 | RGB | first, second, 0 |
 //! | 3 | RGB | in order |
 //! | 4 | RGBA | in order |
+//! | 1 to 3, RGBD | RGBA | in order, 0 where there is none; alpha is the divisor |
+//!
+//! Option `rgba` makes it four samples in any case. Samples without channel are 0, and 1 for alpha; `fill-zero` and
+//! `fill-one` change that.
 //!
 //! Two channels are not grey with alpha: many programs multiply by alpha, or drop it. With four channels there is no
 //! choice: a program that multiplies by alpha (OpenImageIO does, unless `oiio:UnassociatedAlpha` is set) reads three of
-//! them wrongly. EXR has no such trap.
+//! them wrongly, and those of RGBD. EXR has no such trap.
 //!
 //! The samples are linear data: gAMA is 1 and there is no sRGB chunk. The provenance is an uncompressed iTXt chunk with
 //! the keyword `brdfbake`; it holds the ids and ranges of the channels, without which the codes mean nothing.
 //! Filter and compression level are fixed, so that one version of this program always makes the same bytes.
 
-use super::{EncodeError, EncodeInput, Encoder, Storage};
+use super::{EncodeError, EncodeInput, Encoder, FileOption, Image, ReadError, Shape, Storage, texels};
 use crate::grid::provenance::ATTRIBUTE;
 
 /// The container. See the module.
 #[derive(Debug, Clone, Copy)]
 pub struct Png;
-
-/// Samples of a pixel that holds a table of `channels` channels: the blue of two channels is empty.
-pub(super) const fn samples_per_pixel(channels: usize) -> usize {
-    if channels == 2 { 3 } else { channels }
-}
 
 impl Encoder for Png {
     fn id(&self) -> &'static str {
@@ -37,11 +36,36 @@ impl Encoder for Png {
     }
 
     fn storages(&self) -> &'static [Storage] {
-        &[Storage::Unorm16]
+        &[Storage::Unorm16, Storage::Unorm8, Storage::Rgbd]
+    }
+
+    fn options(&self) -> &'static [FileOption] {
+        &[FileOption::Rgba, FileOption::FillZero, FileOption::FillOne]
+    }
+
+    fn most_channels(&self) -> usize {
+        4
+    }
+
+    fn components(&self, shape: &Shape<'_>) -> usize {
+        match shape.channels {
+            _ if shape.storage == Storage::Rgbd => 3,
+            _ if shape.has(FileOption::Rgba) => 4,
+            2 => 3,
+            n => n,
+        }
+    }
+
+    fn magic(&self) -> &'static [&'static [u8]] {
+        &[b"\x89PNG\r\n\x1a\n"]
+    }
+
+    fn read(&self, bytes: &[u8]) -> Result<Image, ReadError> {
+        super::png_read::read(bytes)
     }
 
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
-        input.check(self, 4)?;
+        input.check(self)?;
         let [width, height] = input.size();
         let (Ok(w), Ok(h)) = (u32::try_from(width), u32::try_from(height)) else {
             return Err(EncodeError::Size { format: self.id(), width, height, limit: 1 << 24 });
@@ -50,45 +74,26 @@ impl Encoder for Png {
             |e: ::png::EncodingError| EncodeError::Library { format: self.id(), source: Box::new(e) };
         let mut bytes = Vec::new();
         let mut encoder = ::png::Encoder::new(&mut bytes, w, h);
-        encoder.set_color(match input.channels.len() {
-            1 => ::png::ColorType::Grayscale,
-            4 => ::png::ColorType::Rgba,
+        let components = self.components(&input.shape());
+        encoder.set_color(match (input.storage, components) {
+            (Storage::Rgbd, _) | (_, 4) => ::png::ColorType::Rgba,
+            (_, 1) => ::png::ColorType::Grayscale,
             _ => ::png::ColorType::Rgb,
         });
-        encoder.set_depth(::png::BitDepth::Sixteen);
+        let wide = input.storage == Storage::Unorm16;
+        encoder.set_depth(if wide { ::png::BitDepth::Sixteen } else { ::png::BitDepth::Eight });
         encoder.set_filter(::png::Filter::Paeth);
         encoder.set_deflate_compression(::png::DeflateCompression::Level(6));
         encoder.set_source_gamma(::png::ScaledFloat::new(1.0));
         encoder.add_itxt_chunk(ATTRIBUTE.to_owned(), input.provenance_json.to_owned()).map_err(library)?;
         let mut writer = encoder.write_header().map_err(library)?;
-        writer.write_image_data(&pixels(input)?).map_err(library)?;
+        let mut pixels = texels::pack(input, components)?;
+        if wide {
+            // PNG is big-endian
+            pixels.chunks_exact_mut(2).for_each(<[u8]>::reverse);
+        }
+        writer.write_image_data(&pixels).map_err(library)?;
         writer.finish().map_err(library)?;
         Ok(bytes)
     }
-}
-
-/// Big-endian samples, rows from the top.
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a code is an integer in 0 ..= 65535"
-)]
-fn pixels(input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
-    let n = input.channels.len();
-    let pad = samples_per_pixel(n) - n;
-    let mut data = Vec::with_capacity(input.grid.len() * (n + pad) * 2);
-    for (t, texel) in input.values.chunks_exact(n).enumerate() {
-        for (channel, &value) in input.channels.iter().zip(texel) {
-            let storage = input.storage;
-            let code = storage.code(value, channel.range).map_err(|_| EncodeError::NotQuantised {
-                texel: t,
-                channel: channel.id.clone(),
-                value,
-                storage: storage.id(),
-            })?;
-            data.extend_from_slice(&(code as u16).to_be_bytes());
-        }
-        data.resize(data.len() + pad * 2, 0);
-    }
-    Ok(data)
 }

@@ -1,8 +1,7 @@
 //! Reads PNG: 1 to 16 bits, grey, colour, alpha, palette. Samples are codes as they stand: no gamma, no profile.
 
-use super::png::samples_per_pixel;
 use super::read::{Claim, Image, MAX_SAMPLES, Plane, ReadError, Sample};
-use crate::grid::Channel;
+use super::texels;
 use crate::grid::provenance::ATTRIBUTE;
 use image::codecs::png::PngDecoder;
 use image::{ImageDecoder, Limits};
@@ -27,25 +26,18 @@ pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
 }
 
 fn decode(bytes: &[u8]) -> Result<Image, ReadError> {
-    let (width, height, sample, mut planes) = pixels(bytes)?;
+    let (width, height, planes) = pixels(bytes)?;
     let provenance = text(bytes).map(Claim::parse);
-    if let Some(Claim::Known(p)) = &provenance {
-        planes = named(planes, &p.channels);
-    }
-    for plane in &mut planes {
-        for v in &mut plane.values {
-            *v = sample.decode(*v, plane.range);
-        }
-    }
-    Ok(Image { format: FORMAT, width, height, channels: planes, provenance })
+    let channels = texels::finish(planes, provenance.as_ref());
+    Ok(Image { format: FORMAT, width, height, channels, provenance })
 }
 
 fn library(e: impl std::error::Error + Send + Sync + 'static) -> ReadError {
     ReadError::Library { format: FORMAT, source: Box::new(e) }
 }
 
-/// Size, sample type and codes of each channel.
-fn pixels(bytes: &[u8]) -> Result<(usize, usize, Sample, Vec<Plane>), ReadError> {
+/// Size and codes of each channel.
+fn pixels(bytes: &[u8]) -> Result<(usize, usize, Vec<Plane>), ReadError> {
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_ALLOC);
     let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(library)?;
@@ -73,7 +65,7 @@ fn pixels(bytes: &[u8]) -> Result<(usize, usize, Sample, Vec<Plane>), ReadError>
         range: [0.0, 1.0],
         values: data.chunks_exact(size).skip(c).step_by(n).map(code).collect(),
     };
-    Ok((width, height, sample, names.iter().enumerate().map(plane).collect()))
+    Ok((width, height, names.iter().enumerate().map(plane).collect()))
 }
 
 fn code(sample: &[u8]) -> f64 {
@@ -81,25 +73,6 @@ fn code(sample: &[u8]) -> f64 {
         [a, b] => f64::from(u16::from_ne_bytes([*a, *b])),
         _ => sample.first().map_or(0.0, |&a| f64::from(a)),
     }
-}
-
-/// Gives the channels the ids and ranges of the provenance, if their number fits. The empty blue of a table of two
-/// channels is dropped; a blue that is not empty was not written by this program and stays.
-fn named(mut planes: Vec<Plane>, channels: &[Channel]) -> Vec<Plane> {
-    if channels.is_empty() || planes.len() != samples_per_pixel(channels.len()) {
-        return planes;
-    }
-    for (plane, channel) in planes.iter_mut().zip(channels) {
-        let [lo, hi] = channel.range;
-        plane.name.clone_from(&channel.id);
-        if lo < hi && (hi - lo).is_finite() {
-            plane.range = [lo, hi];
-        }
-    }
-    if planes.len() > channels.len() && planes[channels.len()].values.iter().all(|v| v.abs() == 0.0) {
-        planes.truncate(channels.len());
-    }
-    planes
 }
 
 /// The text of the `brdfbake` chunk (iTXt, tEXt or zTXt), wherever it stands. A file that is damaged behind its pixels

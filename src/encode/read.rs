@@ -1,9 +1,10 @@
-//! Reads any EXR or PNG, of this program or another, into f64 channels.
+//! Reads pictures, of this program or another, into f64 channels.
 //!
 //! Files are not trusted. Sizes are checked before memory is asked for ([`MAX_BYTES`], [`MAX_SAMPLES`]); a damaged file
 //! is an error, never a panic and never a picture with holes in it.
 
-use super::storage::{Coding, Storage};
+use super::coding::Coding;
+use super::storage::Storage;
 use crate::grid::Provenance;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -17,7 +18,7 @@ pub const MAX_SAMPLES: usize = 1 << 28;
 /// A picture as f64 channels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Image {
-    /// Container id: `exr` or `png`.
+    /// Container id: `exr`.
     pub format: &'static str,
     /// Width in pixels.
     pub width: usize,
@@ -67,32 +68,73 @@ pub enum Sample {
     Float,
     /// 32-bit integer (EXR), the number itself.
     Uint32,
+    /// 64-bit float.
+    Double,
     /// 8-bit code (PNG of 1 to 8 bits, palettes included).
     Unorm8,
     /// 16-bit code.
     Unorm16,
+    /// 10-bit code.
+    Rgb10a2,
+    /// Unsigned float of 11 or 10 bits.
+    R11g11b10,
+    /// 9-bit mantissa with the exponent of its texel.
+    Rgb9e5,
+    /// 8-bit mantissa with the exponent of its texel.
+    Rgbe,
+    /// 8-bit code with the divisor of its texel.
+    Rgbd,
 }
 
 impl Sample {
+    /// The sample type of a storage.
+    #[must_use]
+    pub const fn of(storage: Storage) -> Sample {
+        match storage {
+            Storage::Half => Sample::Half,
+            Storage::Float => Sample::Float,
+            Storage::Double => Sample::Double,
+            Storage::Unorm8 => Sample::Unorm8,
+            Storage::Unorm16 => Sample::Unorm16,
+            Storage::Rgb10a2 => Sample::Rgb10a2,
+            Storage::R11g11b10 => Sample::R11g11b10,
+            Storage::Rgb9e5 => Sample::Rgb9e5,
+            Storage::Rgbe => Sample::Rgbe,
+            Storage::Rgbd => Sample::Rgbd,
+        }
+    }
+
+    /// The storage, if there is one for it.
+    const fn storage(self) -> Option<Storage> {
+        Some(match self {
+            Sample::Half => Storage::Half,
+            Sample::Float => Storage::Float,
+            Sample::Double => Storage::Double,
+            Sample::Unorm8 => Storage::Unorm8,
+            Sample::Unorm16 => Storage::Unorm16,
+            Sample::Rgb10a2 => Storage::Rgb10a2,
+            Sample::R11g11b10 => Storage::R11g11b10,
+            Sample::Rgb9e5 => Storage::Rgb9e5,
+            Sample::Rgbe => Storage::Rgbe,
+            Sample::Rgbd => Storage::Rgbd,
+            Sample::Uint32 => return None,
+        })
+    }
+
     /// Id in reports.
     #[must_use]
     pub const fn id(self) -> &'static str {
-        match self {
-            Sample::Half => "half",
-            Sample::Float => "float",
-            Sample::Uint32 => "uint32",
-            Sample::Unorm8 => "unorm8",
-            Sample::Unorm16 => "unorm16",
+        match self.storage() {
+            Some(storage) => storage.id(),
+            None => "uint32",
         }
     }
 
     const fn coding(self) -> Coding {
-        match self {
-            Sample::Half => Storage::Half.coding(),
-            Sample::Float => Storage::Float.coding(),
-            Sample::Unorm16 => Storage::Unorm16.coding(),
-            Sample::Unorm8 => Coding::Unorm { top: 255.0 },
-            Sample::Uint32 => Coding::Binary { digits: 1, least: 0, largest: 1.0 },
+        match self.storage() {
+            // of channels that differ, the coarsest
+            Some(storage) => storage.coding(2),
+            None => Coding::Binary { digits: 1, least: 0, largest: 1.0, signed: false },
         }
     }
 
@@ -234,8 +276,8 @@ pub enum ReadError {
         /// Height in pixels.
         height: usize,
     },
-    /// Neither EXR nor PNG.
-    #[error("neither an EXR nor a PNG file (it begins with {0:02x?})")]
+    /// Of no container that is read.
+    #[error("not a file of {list} (it begins with {0:02x?})", list = super::readable().join(", "))]
     Unknown(
         /// The first bytes.
         Vec<u8>,
@@ -261,14 +303,12 @@ pub enum ReadError {
 /// Reads a picture from memory; the first bytes tell the container.
 ///
 /// # Errors
-/// [`ReadError`] for anything but a sound EXR or PNG within the limits.
+/// [`ReadError`] for anything but a sound file of a container that is read, within the limits.
 pub fn read_bytes(bytes: &[u8]) -> Result<Image, ReadError> {
-    if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
-        super::exr_read::read(bytes)
-    } else if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
-        super::png_read::read(bytes)
-    } else {
-        Err(ReadError::Unknown(bytes.iter().copied().take(8).collect()))
+    let found = super::ENCODERS.iter().find(|e| e.magic().iter().any(|m| bytes.starts_with(m)));
+    match found {
+        Some(encoder) => encoder.read(bytes),
+        None => Err(ReadError::Unknown(bytes.iter().copied().take(8).collect())),
     }
 }
 

@@ -4,9 +4,10 @@
 //! (2.7): on x86 with F16C that rounds twice (f64 to f32 to half), and its portable path ignores the low 32 bits of the
 //! mantissa. Either way 1 + 2^-11 + 2^-52, just above a tie, becomes 1 instead of 1 + 2^-10 (`tests/encode.rs`).
 //!
-//! A new storage is one variant, one entry in [`STORAGES`] and one `Coding`. A coding that couples the channels of a
-//! texel (RGBD, RGB9E5) hooks into [`Storage::quantise_texel`].
+//! A new storage is one variant, one entry in [`STORAGES`] and one `Coding`. Most code each number by itself; three code
+//! the channels of a texel together ([`Storage::quantise_texel`]).
 
+use super::coding::{self, Coding, RGBD_LARGEST, Shared, exponent, power_of_two};
 use crate::grid::Table;
 use crate::grid::table::{Extreme, place};
 use serde::{Deserialize, Serialize};
@@ -19,24 +20,44 @@ pub enum Storage {
     Half,
     /// IEEE 754 binary32: 24 bits.
     Float,
+    /// IEEE 754 binary64: the integral as it was computed.
+    Double,
+    /// 8-bit code over the range of the channel: `lo + code / 255 (hi - lo)`.
+    Unorm8,
     /// 16-bit code over the range of the channel: `lo + code / 65535 (hi - lo)`.
     Unorm16,
+    /// Up to three 10-bit codes over the ranges of their channels, `lo + code / 1023 (hi - lo)`; the two bits of the
+    /// fourth component hold none. `A2B10G10R10` of Vulkan, `R10G10B10A2` of DXGI.
+    Rgb10a2,
+    /// Up to three unsigned floats without sign: 6 bits of mantissa for red and green, 5 for blue, largest 65024 and
+    /// 64512. `B10G11R11` of Vulkan, `R11G11B10` of DXGI.
+    R11g11b10,
+    /// Up to three 9-bit mantissas with one 5-bit exponent: `m 2^(E - 24)`, largest 65408.
+    Rgb9e5,
+    /// Up to three 8-bit mantissas with one 8-bit exponent, as in Radiance pictures: `m 2^(E - 136)`. Radiance's own
+    /// programs read `(m + 1/2)`; nearly all others, and this one, read `m`.
+    Rgbe,
+    /// Up to three 8-bit codes with a divisor, as Babylon.js expands them: `(code / 255)^2.2 / (d / 255)`, largest 255.
+    Rgbd,
 }
 
 /// Every storage.
-pub static STORAGES: &[Storage] = &[Storage::Half, Storage::Float, Storage::Unorm16];
+pub static STORAGES: &[Storage] = &[
+    Storage::Half,
+    Storage::Float,
+    Storage::Double,
+    Storage::Unorm8,
+    Storage::Unorm16,
+    Storage::Rgb10a2,
+    Storage::R11g11b10,
+    Storage::Rgb9e5,
+    Storage::Rgbe,
+    Storage::Rgbd,
+];
 
-/// The arithmetic behind a storage.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Coding {
-    /// Binary floating point with `digits` significant bits, normal from `2^least` on, up to `largest`.
-    Binary { digits: i32, least: i32, largest: f64 },
-    /// Integers 0 ..= `top` spread over the range of the channel.
-    Unorm { top: f64 },
-}
-
-/// How far beyond an end of its range a unorm value may lie, as a part of the range: the noise of sums in f64, such as
-/// an albedo of 1 + 4e-16. It is far below any step, so this is rounding; anything further out is a finding.
+/// How far beyond an end of its range a unorm value may lie, as a part of the range, and how far below zero a value
+/// without sign: the noise of sums in f64, such as an albedo of 1 + 4e-16. It is far below any step, so this is rounding;
+/// anything further out is a finding.
 const NOISE: f64 = 1e-12;
 
 /// Why a value has no stored form.
@@ -71,6 +92,24 @@ pub enum QuantiseError {
         /// Storage id.
         storage: &'static str,
     },
+    /// Below zero, in a storage without sign.
+    #[error("value {value} is negative and {storage} has no sign; store it as half or float")]
+    Negative {
+        /// The value.
+        value: f64,
+        /// Storage id.
+        storage: &'static str,
+    },
+    /// More channels than a texel of this storage holds.
+    #[error("{storage} holds at most {limit} channels, the table has {count}")]
+    Channels {
+        /// Channels of the table.
+        count: usize,
+        /// Most that it holds.
+        limit: usize,
+        /// Storage id.
+        storage: &'static str,
+    },
     /// The range of the channel is empty or not finite, so that a unorm cannot encode it.
     #[error("{storage} needs a finite range with lo < hi, got [{lo}, {hi}]; store it as half or float")]
     Range {
@@ -90,7 +129,14 @@ impl Storage {
         match self {
             Storage::Half => "half",
             Storage::Float => "float",
+            Storage::Double => "double",
+            Storage::Unorm8 => "unorm8",
             Storage::Unorm16 => "unorm16",
+            Storage::Rgb10a2 => "rgb10a2",
+            Storage::R11g11b10 => "r11g11b10",
+            Storage::Rgb9e5 => "rgb9e5",
+            Storage::Rgbe => "rgbe",
+            Storage::Rgbd => "rgbd",
         }
     }
 
@@ -100,18 +146,44 @@ impl Storage {
         STORAGES.iter().copied().find(|s| s.id() == id)
     }
 
-    pub(crate) const fn coding(self) -> Coding {
+    /// Most channels of a texel, if the storage sets a limit.
+    #[must_use]
+    pub const fn most_channels(self) -> Option<usize> {
         match self {
-            Storage::Half => Coding::Binary { digits: 11, least: -14, largest: 65504.0 },
-            Storage::Float => Coding::Binary { digits: 24, least: -126, largest: f32::MAX as f64 },
-            Storage::Unorm16 => Coding::Unorm { top: 65535.0 },
+            Storage::Rgb10a2 | Storage::R11g11b10 | Storage::Rgb9e5 | Storage::Rgbe | Storage::Rgbd => {
+                Some(3)
+            }
+            _ => None,
         }
     }
 
-    /// The number that a reader gets back: `value` rounded to the nearest stored one, ties to even.
+    /// How channel number `channel` is stored.
+    pub(crate) const fn coding(self, channel: usize) -> Coding {
+        match self {
+            Storage::Half => Coding::Binary { digits: 11, least: -14, largest: 65504.0, signed: true },
+            Storage::Float => {
+                Coding::Binary { digits: 24, least: -126, largest: f32::MAX as f64, signed: true }
+            }
+            Storage::Double => Coding::Binary { digits: 53, least: -1022, largest: f64::MAX, signed: true },
+            Storage::Unorm8 => Coding::Unorm { top: 255.0 },
+            Storage::Unorm16 => Coding::Unorm { top: 65535.0 },
+            Storage::Rgb10a2 => Coding::Unorm { top: 1023.0 },
+            Storage::R11g11b10 if channel == 2 => {
+                Coding::Binary { digits: 6, least: -14, largest: 64512.0, signed: false }
+            }
+            Storage::R11g11b10 => Coding::Binary { digits: 7, least: -14, largest: 65024.0, signed: false },
+            Storage::Rgb9e5 => Coding::Shared(coding::RGB9E5),
+            Storage::Rgbe => Coding::Shared(coding::RGBE),
+            Storage::Rgbd => Coding::Rgbd,
+        }
+    }
+
+    /// The number that a reader gets back: `value` rounded to the nearest stored one, ties to even, as the only channel
+    /// of its texel.
     ///
     /// `range` is the channel's; only a unorm uses it. A unorm takes a value beyond an end of its range by at most
-    /// 1e-12 of the range for that end: the noise of sums in f64.
+    /// 1e-12 of the range for that end, and a storage without sign one of at least -1e-12 for zero: the noise of sums
+    /// in f64.
     ///
     /// Range: the stored numbers. Accuracy: exact, at most half a [`Storage::ulp`] from `value` (`tests/encode.rs`).
     ///
@@ -125,27 +197,16 @@ impl Storage {
     /// # Errors
     /// [`QuantiseError`] for a value without stored form; nothing is ever clamped.
     pub fn quantise(self, value: f64, range: [f64; 2]) -> Result<f64, QuantiseError> {
-        if !value.is_finite() {
-            return Err(QuantiseError::NotFinite { value });
-        }
-        match self.coding() {
-            Coding::Binary { digits, least, largest } => {
-                let step = power_of_two(exponent(value).max(least) - digits + 1);
-                let rounded = (value / step).round_ties_even() * step;
-                if rounded.abs() > largest {
-                    return Err(QuantiseError::Overflow { value, limit: largest, storage: self.id() });
-                }
-                Ok(rounded)
-            }
-            coding @ Coding::Unorm { .. } => Ok(coding.decode(self.code(value, range)?, range)),
-        }
+        let mut texel = [value];
+        self.quantise_texel(&mut texel, |_| range).map_err(|(_, e)| e)?;
+        Ok(texel[0])
     }
 
     /// Integer code of a value, as f64: `round((value - lo) / (hi - lo) top)`, ties to even. Floats have none.
     pub(crate) fn code(self, value: f64, range: [f64; 2]) -> Result<f64, QuantiseError> {
         let [lo, hi] = range;
         let storage = self.id();
-        let Coding::Unorm { top } = self.coding() else { return Ok(value) };
+        let Coding::Unorm { top } = self.coding(0) else { return Ok(value) };
         if !(lo.is_finite() && hi.is_finite() && lo < hi && (hi - lo).is_finite()) {
             return Err(QuantiseError::Range { lo, hi, storage });
         }
@@ -156,7 +217,8 @@ impl Storage {
         Ok((x * top).round_ties_even().abs())
     }
 
-    /// Quantises the channels of one texel in place; the error names the channel's index.
+    /// Quantises the channels of one texel in place; the error names the channel's index. A storage that couples them
+    /// takes the stored texel whose largest error is smallest.
     ///
     /// # Errors
     /// The index of the channel and its [`QuantiseError`].
@@ -165,62 +227,89 @@ impl Storage {
         texel: &mut [f64],
         range: impl Fn(usize) -> [f64; 2],
     ) -> Result<(), (usize, QuantiseError)> {
+        let (count, storage) = (texel.len(), self.id());
+        if let Some(limit) = self.most_channels().filter(|&limit| count > limit) {
+            return Err((limit, QuantiseError::Channels { count, limit, storage }));
+        }
         for (c, v) in texel.iter_mut().enumerate() {
-            *v = self.quantise(*v, range(c)).map_err(|e| (c, e))?;
+            *v = self.alone(*v, c, range(c)).map_err(|e| (c, e))?;
+        }
+        match self.coding(0) {
+            Coding::Shared(shared) => {
+                let (mantissas, e) = shared.nearest(texel);
+                for (v, m) in texel.iter_mut().zip(mantissas) {
+                    *v = m * power_of_two(e);
+                }
+            }
+            Coding::Rgbd => {
+                let (codes, d) = coding::rgbd_nearest(texel);
+                for (v, code) in texel.iter_mut().zip(codes) {
+                    *v = coding::rgbd(code, d);
+                }
+            }
+            _ => {}
         }
         Ok(())
     }
 
-    /// Distance of neighbouring stored numbers at `value` (towards infinity); `range` as in [`Storage::quantise`].
+    /// Rounds a value if its channel is coded by itself, and checks it in any case.
+    fn alone(self, value: f64, channel: usize, range: [f64; 2]) -> Result<f64, QuantiseError> {
+        if !value.is_finite() {
+            return Err(QuantiseError::NotFinite { value });
+        }
+        let storage = self.id();
+        let overflow = |limit| QuantiseError::Overflow { value, limit, storage };
+        let positive = |v: f64| match v {
+            v if v < -NOISE => Err(QuantiseError::Negative { value, storage }),
+            v => Ok(if v > 0.0 { v } else { 0.0 }),
+        };
+        match self.coding(channel) {
+            Coding::Binary { digits: 53, .. } => Ok(value),
+            Coding::Binary { digits, least, largest, signed } => {
+                let v = if signed { value } else { positive(value)? };
+                let step = power_of_two(exponent(v).max(least) - digits + 1);
+                let rounded = (v / step).round_ties_even() * step;
+                if rounded.abs() > largest { Err(overflow(largest)) } else { Ok(rounded) }
+            }
+            coding @ Coding::Unorm { .. } => Ok(coding.decode(self.code(value, range)?, range)),
+            Coding::Shared(shared) => {
+                let v = positive(value)?;
+                let Shared { top, exponents: [_, most] } = shared;
+                let rounded = (v / power_of_two(most)).round_ties_even();
+                if rounded > top { Err(overflow(shared.largest())) } else { Ok(v) }
+            }
+            Coding::Rgbd => {
+                let v = positive(value)?;
+                if v > RGBD_LARGEST { Err(overflow(RGBD_LARGEST)) } else { Ok(v) }
+            }
+        }
+    }
+
+    /// Distance of neighbouring stored numbers at `value` (towards infinity); `range` as in [`Storage::quantise`]. If
+    /// the channels differ, that of the coarsest; if they are coupled, where `value` is the largest of its texel.
     #[must_use]
     pub fn ulp(self, value: f64, range: [f64; 2]) -> f64 {
-        self.coding().ulp(value, range)
+        self.coding(2).ulp(value, range)
     }
 
     /// True if it encodes the range of the channel, which must then be finite.
     #[must_use]
     pub const fn is_bounded(self) -> bool {
-        matches!(self.coding(), Coding::Unorm { .. })
+        matches!(self.coding(0), Coding::Unorm { .. })
     }
 
-    /// The tolerance that suits this storage when the recipe names none: half a step just below 1.
+    /// The tolerance that suits this storage when the recipe names none: half a step just below 1 of the finest
+    /// channel; 1e-9 for [`Storage::Double`], whose steps are beyond any integral.
     #[must_use]
     pub fn default_tolerance(self) -> f64 {
-        match self.coding() {
+        match self.coding(0) {
+            Coding::Binary { digits: 53, .. } => 1e-9,
             Coding::Binary { digits, .. } => power_of_two(-digits - 1),
             Coding::Unorm { top } => 0.5 / top,
+            Coding::Shared(Shared { top, .. }) => power_of_two(-exponent(top) - 2),
+            Coding::Rgbd => (1.0 - coding::rgbd(254, 255)) / 2.0,
         }
     }
-}
-
-impl Coding {
-    /// The number that a unorm code stands for.
-    pub(crate) fn decode(self, code: f64, range: [f64; 2]) -> f64 {
-        match self {
-            Coding::Unorm { top } => range[0] + code / top * (range[1] - range[0]),
-            Coding::Binary { .. } => code,
-        }
-    }
-
-    pub(crate) fn ulp(self, value: f64, range: [f64; 2]) -> f64 {
-        match self {
-            Coding::Binary { digits, least, largest } => {
-                power_of_two(exponent(value).clamp(least, exponent(largest)) - digits + 1)
-            }
-            Coding::Unorm { top } => (range[1] - range[0]) / top,
-        }
-    }
-}
-
-/// `floor(log2 |x|)` of a normal number; -1023 for zero and subnormals, 1024 for infinity and NaN.
-#[allow(clippy::cast_possible_truncation, reason = "eleven bits are left")]
-fn exponent(x: f64) -> i32 {
-    (x.to_bits() >> 52 & 0x7ff) as i32 - 1023
-}
-
-/// `2^n` for -1022 <= n <= 1023.
-fn power_of_two(n: i32) -> f64 {
-    f64::from_bits(u64::from((n + 1023).unsigned_abs()) << 52)
 }
 
 /// A table as a reader will see it.

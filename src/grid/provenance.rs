@@ -122,10 +122,13 @@ pub struct Integration {
 /// How values were rounded.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Encoding {
-    /// Storage id: `half`, `float`, `unorm16`.
+    /// Storage id: `half`, `float`, `unorm16`, ...
     pub storage: String,
     /// Largest difference between integral and stored value.
     pub largest_error: f64,
+    /// Values of the components of a pixel that follow the channels and hold none: `[0, 1]` for two channels as RGBA.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub fill: Vec<f64>,
 }
 
 /// Errors of the reader's reconstruction, against fresh integrals between the texels.

@@ -3,7 +3,7 @@
 use super::event::ReconstructionEntry;
 use super::manifest::tool;
 use super::{Event, Extremum, FileRecord, PipelineError, Progress, TableRecord};
-use crate::encode::{self, EncodeInput, Storage};
+use crate::encode::{self, EncodeInput, Shape, Storage};
 use crate::grid::Provenance;
 use crate::grid::provenance::{AxisRecord, Encoding, Integration, RecipeId, SCHEMA, Subject};
 use crate::models::source_lines;
@@ -88,7 +88,13 @@ fn encode_output(
         output: label.clone(),
         error,
     })?;
-    let encoding = Encoding { storage: storage.id().to_owned(), largest_error: stored.largest_error.value };
+    let options = output.file_options();
+    let shape = Shape { grid: &table.grid, channels: table.channels.len(), storage, options: &options };
+    let encoding = Encoding {
+        storage: storage.id().to_owned(),
+        largest_error: stored.largest_error.value,
+        fill: shape.fill(encoder.components(&shape)),
+    };
     let reconstruction = probe.map(|p| p.measure(&stored.values));
     let provenance = Provenance {
         encoding: Some(encoding.clone()),
@@ -101,7 +107,9 @@ fn encode_output(
         grid: &table.grid,
         channels: &table.channels,
         values: &stored.values,
+        errors: &table.errors,
         storage,
+        options: &options,
         provenance_json: &json,
     };
     let bytes = encoder.encode(&input).map_err(|error| PipelineError::Encode {

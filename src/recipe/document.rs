@@ -155,7 +155,11 @@ fn outputs(section: &Section<'_>, faults: &mut Faults) -> Option<Vec<Option<Outp
             };
             faults.value(path, fault);
         }
-        outputs.push(output.map(|(c, s)| Output { container: c.to_owned(), storage: s.to_owned() }));
+        outputs.push(output.map(|(container, rest)| {
+            let mut words = rest.split('+').map(|w| w.trim().to_owned());
+            let storage = words.next().unwrap_or_default();
+            Output { container: container.to_owned(), storage, options: words.collect() }
+        }));
     }
     Some(outputs)
 }

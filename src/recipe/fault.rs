@@ -128,8 +128,8 @@ pub enum Fault {
         /// What is wrong.
         why: &'static str,
     },
-    /// An output that is not `container:storage`.
-    #[error("output `{got}` is not of the form `container:storage`")]
+    /// An output that is not `container:storage`, with or without options.
+    #[error("output `{got}` is not of the form `container:storage` or `container:storage+option`")]
     OutputForm {
         /// The text given.
         got: String,
@@ -146,6 +146,9 @@ pub enum Fault {
         /// Range of the channel.
         range: [f64; 2],
     },
+    /// A container that cannot hold the table: too many channels, options that exclude each other.
+    #[error("{0}")]
+    Container(String),
     /// A waiver for a law that is not checked.
     #[error("table {kind} does not check law `{law}`")]
     IdleWaiver {
@@ -234,6 +237,7 @@ impl Fault {
             Fault::WarpForm { .. } => {
                 "write { power = p }, { one-minus-power = p } or { coupled = \"alpha\", power = 2.0, scale = 1.0, exponent = 1.0 }"
             }
+            Fault::Container(_) => "take another container, storage or layout",
             Fault::WideRange { .. } => "store it as half or float, or take a layout with bounded channels",
             Fault::SweptRange { .. } => "give the axis a domain inside that range",
             Fault::SplitFresnel { .. } => "leave it out; the shader applies F0 and F90",

@@ -6,6 +6,7 @@ use super::document::{Document, Entry};
 use super::fault::{Fault, Faults};
 use super::section::unknown_word;
 use super::{Format, Stored, TOLERANCE, formats, name};
+use crate::encode::{self, FileOption, Shape, Storage};
 use crate::grid::provenance::Waiver;
 use crate::tables::driver::OnMiss;
 use crate::tables::spec::Request;
@@ -58,11 +59,30 @@ pub struct Output {
     pub container: String,
     /// Storage id: `half`.
     pub storage: String,
+    /// Words of its options: `rgba`, `zstd`. In a plan: each once, in the order of
+    /// [`FILE_OPTIONS`](crate::encode::FILE_OPTIONS).
+    pub options: Vec<String>,
 }
 
+impl Output {
+    /// An output without options.
+    #[must_use]
+    pub fn new(container: &str, storage: &str) -> Output {
+        Output { container: container.to_owned(), storage: storage.to_owned(), options: Vec::new() }
+    }
+
+    /// The options, without words that are none.
+    #[must_use]
+    pub fn file_options(&self) -> Vec<FileOption> {
+        self.options.iter().filter_map(|o| FileOption::find(o)).collect()
+    }
+}
+
+/// `ktx2:half+rgba+zstd`.
 impl std::fmt::Display for Output {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}:{}", self.container, self.storage)
+        write!(f, "{}:{}", self.container, self.storage)?;
+        self.options.iter().try_for_each(|o| write!(f, "+{o}"))
     }
 }
 
@@ -195,7 +215,7 @@ fn entry(i: usize, table: TableRequest) -> Entry {
 }
 
 fn default_output() -> Output {
-    Output { container: "exr".to_owned(), storage: "half".to_owned() }
+    Output::new("exr", "half")
 }
 
 /// Resolves a document. None if a part of it is missing; the faults say which.
@@ -253,6 +273,7 @@ fn table(entry: Entry, tolerance: Option<f64>, faults: &mut Faults) -> Option<Pl
     let waivers = kind.map(|kind| waivers(&entry, kind, faults));
     if let Some(bound) = &bound {
         check_storable(&entry, bound, &stored, faults);
+        check_shapes(&entry, bound, faults);
     }
     if faults.len() > before {
         return None;
@@ -296,8 +317,8 @@ fn outputs(entry: &Entry, faults: &mut Faults) -> (Vec<Output>, Vec<Option<&'sta
     let mut stored = Vec::new();
     for (i, output) in listed.iter().enumerate() {
         let found = output.as_ref().and_then(|output| match check_output(output, &known) {
-            Ok(stored) => {
-                known.push(output.clone());
+            Ok((output, stored)) => {
+                known.push(output);
                 Some(stored)
             }
             Err(fault) => {
@@ -310,18 +331,49 @@ fn outputs(entry: &Entry, faults: &mut Faults) -> (Vec<Output>, Vec<Option<&'sta
     (known, stored)
 }
 
-fn check_output(output: &Output, before: &[Output]) -> Result<&'static Stored, Fault> {
-    let Output { container, storage: id } = output;
+/// The output with its options in order, and its storage.
+fn check_output(output: &Output, before: &[Output]) -> Result<(Output, &'static Stored), Fault> {
+    let Output { container, storage: id, .. } = output;
     let found = format(container)
         .ok_or_else(|| unknown_word("container", container, formats().iter().map(|f| f.container)))?;
     let stored = storage(found, id).ok_or_else(|| {
         unknown_word(&format!("{container} storage"), id, found.storages.iter().map(|s| s.id))
     })?;
-    if before.contains(output) {
-        let why = "both would write the same file".to_owned();
-        return Err(Fault::Twice { what: "output", got: output.to_string(), why });
+    let offered = encode::encoder(container).map_or(&[][..], |e| e.options());
+    let mut options = Vec::new();
+    for word in &output.options {
+        let option = offered.iter().find(|o| o.id() == word).ok_or_else(|| {
+            unknown_word(&format!("{container} option"), word, offered.iter().map(|o| o.id()))
+        })?;
+        options.push(*option);
     }
-    Ok(stored)
+    options.sort();
+    options.dedup();
+    if before.iter().any(|o| o.container == *container && o.storage == *id) {
+        let why = "both would write the same file".to_owned();
+        return Err(Fault::Twice { what: "output", got: format!("{container}:{id}"), why });
+    }
+    let options = options.iter().map(|o| o.id().to_owned()).collect();
+    Ok((Output { options, ..output.clone() }, stored))
+}
+
+/// A container must be able to hold a table of this shape: channels, axes, options.
+fn check_shapes(entry: &Entry, bound: &Bound, faults: &mut Faults) {
+    for (i, output) in entry.outputs.iter().flatten().enumerate() {
+        let known = output.as_ref().and_then(|o| {
+            let options = o.file_options();
+            let all = options.len() == o.options.len();
+            all.then_some((encode::encoder(&o.container)?, Storage::find(&o.storage)?, options))
+        });
+        let Some((encoder, storage, options)) = known else { continue };
+        let channels = bound.spec.layout.channels.len();
+        let shape = Shape { grid: &bound.spec.grid, channels, storage, options: &options };
+        let offered =
+            encoder.storages().contains(&storage) && options.iter().all(|o| encoder.options().contains(o));
+        if offered && let Err(error) = shape.check(encoder) {
+            faults.value(format!("{}.outputs[{i}]", entry.path), Fault::Container(error.to_string()));
+        }
+    }
 }
 
 fn format(container: &str) -> Option<&'static Format> {

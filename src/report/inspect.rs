@@ -128,6 +128,10 @@ fn quality(lines: &mut Lines, p: &Provenance) {
     if let Some(e) = &p.encoding {
         lines
             .item("stored as", &format!("{}, rounding error at most {}", e.storage, number(e.largest_error)));
+        if !e.fill.is_empty() {
+            let fill = e.fill.iter().map(|v| number(*v)).collect::<Vec<_>>().join(", ");
+            lines.item("", &format!("components without channel hold {fill}"));
+        }
     }
     if let Some(r) = &p.reconstruction {
         lines.plain("Reading between texels, against fresh integrals");

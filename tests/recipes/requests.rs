@@ -19,7 +19,7 @@ fn requests_and_files_make_the_same_plan() {
 fn requests_are_checked_like_files() {
     let mut bad = TableRequest::new("a/b", request("dgf"));
     bad.tolerance = Some(2.0);
-    bad.outputs = vec![Output { container: "exr".to_owned(), storage: "haf".to_owned() }];
+    bad.outputs = vec![Output::new("exr", "haf")];
     let error = Plan::from_requests("X", vec![bad]).unwrap_err();
     let paths: Vec<&str> = error.faults.iter().map(|(p, _)| p.as_str()).collect();
     assert_eq!(

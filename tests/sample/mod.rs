@@ -58,6 +58,7 @@ pub(crate) fn provenance(table: &Table, storage: Storage) -> Provenance {
         encoding: Some(Encoding {
             storage: storage.id().to_owned(),
             largest_error: quantise_table(table, storage).map_or(0.0, |q| q.largest_error.value),
+            fill: Vec::new(),
         }),
         reconstruction: None,
         laws: vec![LawRecord {
@@ -77,7 +78,9 @@ pub(crate) fn file(encoder: &dyn Encoder, table: &Table, storage: Storage, p: &P
         grid: &table.grid,
         channels: &table.channels,
         values: &quantise_table(table, storage).unwrap().values,
+        errors: &table.errors,
         storage,
+        options: &[],
         provenance_json: &serde_json::to_string(p).unwrap(),
     };
     encoder.encode(&input).unwrap()
@@ -92,6 +95,14 @@ pub(crate) fn hard(storage: Storage) -> fn(usize, f64) -> f64 {
         Storage::Float => {
             |i, x| [1e-45, 3.4e38, 1.0 + f64::EPSILON, -0.0, 1.18e-38, 0.1, -x].get(i).copied().unwrap_or(x)
         }
-        Storage::Unorm16 => |i, x| [0.0, 1.0, 0.5 / 65535.0, 1.5 / 65535.0].get(i).copied().unwrap_or(x),
+        Storage::Double => |i, x| [5e-324, 1.7e308, -0.0, 0.1 + 1e-17, -x].get(i).copied().unwrap_or(x),
+        Storage::Rgb9e5 | Storage::R11g11b10 => {
+            |i, x| [0.0, 64000.0, 1e-6, 511.7 / 512.0, 3e-5, 1.0].get(i).copied().unwrap_or(x)
+        }
+        Storage::Rgbe => |i, x| [0.0, 1e30, 1e-38, 255.7 / 256.0, 1.0].get(i).copied().unwrap_or(x),
+        Storage::Rgbd => |i, x| [0.0, 255.0, 1e-7, 9.13, 1.0].get(i).copied().unwrap_or(x),
+        Storage::Unorm8 | Storage::Unorm16 | Storage::Rgb10a2 => {
+            |i, x| [0.0, 1.0, 0.5 / 65535.0, 1.5 / 65535.0].get(i).copied().unwrap_or(x)
+        }
     }
 }

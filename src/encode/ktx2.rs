@@ -1,0 +1,205 @@
+//! KTX2: 2D, volume or array; 1 to 4 components; half, float, unorm, packed words; Zstandard if asked for.
+//!
+//! | storage | Vulkan format |
+//! |---|---|
+//! | `half` | R16, R16G16, R16G16B16, R16G16B16A16 SFLOAT |
+//! | `float` | R32 ... R32G32B32A32 SFLOAT |
+//! | `unorm8`, `unorm16` | R8 ... R8G8B8A8, R16 ... R16G16B16A16 UNORM |
+//! | `rgbd` | R8G8B8A8 UNORM; alpha is the divisor |
+//! | `rgb10a2` | A2B10G10R10 UNORM PACK32 |
+//! | `r11g11b10` | B10G11R11 UFLOAT PACK32 |
+//! | `rgb9e5` | E5B9G9R9 UFLOAT PACK32 |
+//!
+//! A table with three axes is a volume, with option `layers` an array; one with four is always an array, since nothing
+//! filters across the fourth. Few GPUs sample three components of 8 or 16 bits: `rgba` makes them four.
+//!
+//! The file has one level. Its keys are `KTXorientation` (`rd`, `rdi` for a volume: down and away), `KTXwriter`,
+//! `KTXwriterScParams` if it is supercompressed, and `brdfbake`, the provenance as JSON text. Values end with a NUL, as
+//! those of the format's own keys do. The descriptor is that of [`super`]'s `dfd`.
+//!
+//! Source: KTX File Format Specification 2.0.4, sections 2 and 3. Zstandard is level 19; the bytes then depend on the
+//! version of its library, the values do not.
+
+use super::{EncodeError, EncodeInput, Encoder, FileOption, Image, ReadError, Shape, Storage, dfd, texels};
+use crate::grid::provenance::ATTRIBUTE;
+
+/// The container. See the module.
+#[derive(Debug, Clone, Copy)]
+pub struct Ktx2;
+
+pub(super) const MAGIC: &[u8] = b"\xabKTX 20\xbb\r\n\x1a\n";
+
+/// Length of the header, the index and the one entry of the level index.
+const HEAD: usize = 80 + 24;
+
+/// Supercompression scheme Zstandard.
+const SCHEME_ZSTD: u32 = 2;
+
+#[cfg(feature = "zstd")]
+const LEVEL: i32 = 19;
+
+impl Encoder for Ktx2 {
+    fn id(&self) -> &'static str {
+        "ktx2"
+    }
+
+    fn extension(&self) -> &'static str {
+        "ktx2"
+    }
+
+    fn storages(&self) -> &'static [Storage] {
+        &[
+            Storage::Half,
+            Storage::Float,
+            Storage::Unorm8,
+            Storage::Unorm16,
+            Storage::Rgb10a2,
+            Storage::R11g11b10,
+            Storage::Rgb9e5,
+            Storage::Rgbd,
+        ]
+    }
+
+    fn options(&self) -> &'static [FileOption] {
+        use FileOption::{FillOne, FillZero, Layers, Rgba};
+        #[cfg(feature = "zstd")]
+        return &[Rgba, FillZero, FillOne, Layers, FileOption::Zstd];
+        #[cfg(not(feature = "zstd"))]
+        return &[Rgba, FillZero, FillOne, Layers];
+    }
+
+    fn most_channels(&self) -> usize {
+        4
+    }
+
+    fn components(&self, shape: &Shape<'_>) -> usize {
+        let wanted = if shape.has(FileOption::Rgba) { 4 } else { shape.channels };
+        texels::packed(shape.storage).unwrap_or(wanted)
+    }
+
+    fn magic(&self) -> &'static [&'static [u8]] {
+        &[MAGIC]
+    }
+
+    fn read(&self, bytes: &[u8]) -> Result<Image, ReadError> {
+        super::ktx2_read::read(bytes)
+    }
+
+    fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
+        input.check(self)?;
+        let shape = input.shape();
+        let components = self.components(&shape);
+        let pixels = texels::pack(input, components)?;
+        // RGBD is four bytes a pixel, whatever its components
+        let written = if input.storage == Storage::Rgbd { 4 } else { components };
+        let descriptor = dfd::descriptor(input.storage, written);
+        let keys = keys(input, &shape);
+        let zstd = shape.has(FileOption::Zstd);
+        let data = if zstd { compress(&pixels)? } else { pixels.clone() };
+        // data that is not supercompressed begins at a multiple of its texel and of 4
+        let align = if zstd { 1 } else { lcm(texels::size(input.storage, components), 4) };
+        let start = (HEAD + descriptor.len() + keys.len()).next_multiple_of(align);
+        let too_large = || {
+            let [width, height] = input.size();
+            EncodeError::Size { format: "ktx2", width, height, limit: 1 << 26 }
+        };
+        let word = |n: usize| u32::try_from(n).map_err(|_| too_large());
+        let mut out = MAGIC.to_vec();
+        let [width, height, slices] = shape.extent();
+        let depth = if shape.is_volume() { slices } else { 0 };
+        let layers = shape.layers().unwrap_or(0);
+        let format = vk_format(input.storage, written);
+        for n in [format, type_size(input.storage), word(width)?, word(height)?, word(depth)?, word(layers)?]
+        {
+            out.extend(n.to_le_bytes());
+        }
+        // one face, one level
+        for n in [1, 1, if zstd { SCHEME_ZSTD } else { 0 }] {
+            out.extend(n.to_le_bytes());
+        }
+        for n in [HEAD, descriptor.len(), HEAD + descriptor.len(), keys.len()] {
+            out.extend(word(n)?.to_le_bytes());
+        }
+        out.extend([0; 16]);
+        for n in [start, data.len(), pixels.len()] {
+            out.extend((n as u64).to_le_bytes());
+        }
+        out.extend(descriptor);
+        out.extend(keys);
+        out.resize(start, 0);
+        out.extend(data);
+        Ok(out)
+    }
+}
+
+/// Key/value data, sorted by key, every entry padded to 4 bytes.
+fn keys(input: &EncodeInput<'_>, shape: &Shape<'_>) -> Vec<u8> {
+    let writer = format!("brdfbake {}", env!("CARGO_PKG_VERSION"));
+    let mut entries = vec![
+        ("KTXorientation", if shape.is_volume() { "rdi" } else { "rd" }),
+        ("KTXwriter", writer.as_str()),
+    ];
+    if shape.has(FileOption::Zstd) {
+        entries.push(("KTXwriterScParams", "--zstd 19"));
+    }
+    entries.push((ATTRIBUTE, input.provenance_json));
+    let mut out = Vec::new();
+    for (key, value) in entries {
+        let length = u32::try_from(key.len() + value.len() + 2).unwrap_or(0);
+        out.extend(length.to_le_bytes());
+        out.extend([key.as_bytes(), &[0], value.as_bytes(), &[0]].concat());
+        out.resize(out.len().next_multiple_of(4), 0);
+    }
+    out
+}
+
+/// `VkFormat` of a storage.
+fn vk_format(storage: Storage, components: usize) -> u32 {
+    let of = |formats: [u32; 4]| formats.get(components.wrapping_sub(1)).copied().unwrap_or(0);
+    match storage {
+        Storage::Half => of([76, 83, 90, 97]),
+        Storage::Float => of([100, 103, 106, 109]),
+        Storage::Unorm8 | Storage::Rgbd => of([9, 16, 23, 37]),
+        Storage::Unorm16 => of([70, 77, 84, 91]),
+        Storage::Rgb10a2 => 64,
+        Storage::R11g11b10 => 122,
+        Storage::Rgb9e5 => 123,
+        Storage::Double | Storage::Rgbe => 0,
+    }
+}
+
+/// Storage and components of a `VkFormat`.
+pub(super) fn storage(format: u32) -> Option<(Storage, usize)> {
+    let all = Ktx2.storages().iter().filter(|s| **s != Storage::Rgbd);
+    all.flat_map(|&s| (1..=4).map(move |n| (s, texels::packed(s).unwrap_or(n))))
+        .find(|&(s, n)| vk_format(s, n) == format)
+}
+
+/// Bytes of the word whose byte order matters.
+const fn type_size(storage: Storage) -> u32 {
+    match storage {
+        Storage::Half | Storage::Unorm16 => 2,
+        Storage::Unorm8 | Storage::Rgbd | Storage::Rgbe => 1,
+        _ => 4,
+    }
+}
+
+const fn lcm(a: usize, b: usize) -> usize {
+    let (mut x, mut y) = (a, b);
+    while y > 0 {
+        (x, y) = (y, x % y);
+    }
+    a / x * b
+}
+
+#[cfg(feature = "zstd")]
+fn compress(bytes: &[u8]) -> Result<Vec<u8>, EncodeError> {
+    zstd::bulk::compress(bytes, LEVEL)
+        .map_err(|e| EncodeError::Library { format: "ktx2", source: Box::new(e) })
+}
+
+/// Not offered without the library: see [`Ktx2::options`].
+#[cfg(not(feature = "zstd"))]
+fn compress(_: &[u8]) -> Result<Vec<u8>, EncodeError> {
+    Err(EncodeError::Option { format: "ktx2", option: "zstd", allowed: "none".to_owned() })
+}

@@ -1,0 +1,24 @@
+//! Storages that couple channels, containers beside EXR and PNG, code; each read by something that is not ours.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::float_cmp,
+    clippy::print_stderr,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "tests"
+)]
+
+#[path = "containers/dds_file.rs"]
+mod dds_file;
+#[path = "containers/hostile.rs"]
+mod hostile;
+#[path = "containers/ktx2_file.rs"]
+mod ktx2_file;
+#[path = "containers/others.rs"]
+mod others;
+mod sample;
+#[path = "containers/storages.rs"]
+mod storages;
+#[path = "containers/support.rs"]
+mod support;

@@ -1,0 +1,45 @@
+//! Tables of one to four axes and their files.
+
+use super::sample;
+use brdfbake::encode::{EncodeError, EncodeInput, FileOption, Storage, encoder, quantise_table};
+use brdfbake::grid::{Axis, Channel, Grid, Quantity, Table, Texel};
+
+/// A table with axes of these lengths and `channels` channels in (0, 1).
+pub(crate) fn table(lengths: &[usize], channels: usize) -> Table {
+    let ids = ["mu", "alpha", "f0", "rho"];
+    let axes =
+        lengths.iter().zip(ids).map(|(n, id)| Axis::new(Quantity::find(id).unwrap(), *n, Texel::Center));
+    let grid = Grid::new(axes.collect()).unwrap();
+    let n = grid.len() * channels;
+    let x = |i: usize| (i as f64 * 0.618_033_988_749_895 + 0.1).fract();
+    Table {
+        channels: (0..channels)
+            .map(|c| Channel { id: format!("v{c}"), meaning: "a number".into(), range: [0.0, 1.0] })
+            .collect(),
+        values: (0..n).map(x).collect(),
+        errors: (0..n).map(|i| 1e-9 * i as f64).collect(),
+        evaluations: vec![64; grid.len()],
+        grid,
+    }
+}
+
+/// A file, and the values that it must hold.
+pub(crate) fn written(
+    table: &Table,
+    container: &str,
+    storage: Storage,
+    options: &[FileOption],
+) -> Result<(Vec<u8>, Vec<f64>), EncodeError> {
+    let values = quantise_table(table, storage).unwrap().values;
+    let json = serde_json::to_string(&sample::provenance(table, storage)).unwrap();
+    let input = EncodeInput {
+        grid: &table.grid,
+        channels: &table.channels,
+        values: &values,
+        errors: &table.errors,
+        storage,
+        options,
+        provenance_json: &json,
+    };
+    Ok((encoder(container).unwrap().encode(&input)?, values))
+}
