@@ -58,6 +58,8 @@ pub static QUANTITIES: &[Quantity] = &[
     base("nv", "nv", "1", "exponent of a cosine lobe along the bitangent", [0.0, 1e7]),
     base("sigma", "sigma", "rad", "standard deviation of the slope angle of facets", [0.0, 1.57]),
     base("r", "r", "1", "roughness of a diffuse lobe, as its model takes it", [0.0, 1.0]),
+    base("exponent", "e", "1", "exponent of a generalised Schlick factor", [0.0, 5e4]),
+    base("gloss", "gloss", "1", "gloss of Disney's clear coat", [0.0, 1.0]),
     base("rho", "rho", "1", "diffuse reflectance", [0.0, 1.0]),
     derived(
         "roughness",
@@ -83,6 +85,30 @@ pub static QUANTITIES: &[Quantity] = &[
             formula: "eta = (1 + z^2) / (1 - z^2)",
             to: |z| (1.0 + z * z) / (1.0 - z * z),
             from: |eta| ((eta - 1.0) / (eta + 1.0)).max(0.0).sqrt(),
+        },
+    ),
+    derived(
+        "f0_root4_inverse",
+        "z",
+        "fourth root of the dielectric F0, seen from the denser side",
+        [0.0, 0.99],
+        Base {
+            id: "eta",
+            formula: "eta = (1 - z^2) / (1 + z^2)",
+            to: |z| (1.0 - z * z) / (1.0 + z * z),
+            from: |eta| ((1.0 - eta) / (1.0 + eta)).max(0.0).sqrt(),
+        },
+    ),
+    derived(
+        "schlick_z",
+        "z",
+        "Schlick exponent on (0, 1]: 1 is a constant factor, 1/2 the usual 5",
+        [1e-4, 1.0],
+        Base {
+            id: "exponent",
+            formula: "exponent = 5 (1 - z) / z",
+            to: |z| 5.0 * (1.0 - z) / z,
+            from: |e| 5.0 / (5.0 + e),
         },
     ),
 ];

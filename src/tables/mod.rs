@@ -4,13 +4,19 @@
 
 pub mod albedo;
 pub mod average_albedo;
+pub mod compensation;
 pub mod dfg;
 pub mod driver;
 pub mod fresnel_dielectric;
+pub mod generalised_schlick;
+pub mod glass_compensation;
 pub mod integral;
 pub mod kelemen_beckmann;
+mod memo;
 pub mod ndf;
 pub mod selection;
+pub mod sheen_scaling;
+mod sides;
 pub mod spec;
 pub mod sweep;
 
@@ -26,6 +32,10 @@ pub static TABLES: &[&TableInfo] = &[
     &dfg::INFO,
     &albedo::INFO,
     &average_albedo::INFO,
+    &compensation::INFO,
+    &glass_compensation::INFO,
+    &generalised_schlick::INFO,
+    &sheen_scaling::INFO,
     &fresnel_dielectric::INFO,
     &ndf::INFO,
     &kelemen_beckmann::INFO,
@@ -54,6 +64,12 @@ pub enum TexelError {
         channel: usize,
         /// The value.
         value: f64,
+    },
+    /// Something that no rule here integrates.
+    #[error("there is no rule for {what}")]
+    NoRule {
+        /// What.
+        what: &'static str,
     },
     /// The model refuses its parameters here.
     #[error(transparent)]
