@@ -18,7 +18,7 @@ pub(super) const ROUGHNESS: Param = Param::number(
     [0.01, 1.0],
     Preset::Value(0.5),
 )
-.also(&["r"]);
+.also(&["r", "alpha"]);
 
 /// Cosines below this count as this.
 const HORIZON: f64 = 1e-7;

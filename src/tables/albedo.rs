@@ -1,30 +1,55 @@
-//! Directional albedo: the fraction of light from a uniform sky, or of light along wo, that a surface reflects.
+//! Directional albedo: the fraction of light from a uniform sky, or of light along wo, that a surface reflects; and of an
+//! interface, that crosses it.
 
-use super::integral::{Functional, integrate};
-use super::sweep::Sweep;
+use super::sides::Sides;
 use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::Axis;
 use crate::integrate::Estimate;
 
+const fn channel(id: &'static str, meaning: &'static str) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [0.0, 1.0] }
+}
+
+const E: ChannelInfo =
+    channel("e", "int f(wo, wi) mu_i dwi; of models that transmit R + T, what is not lost between facets");
+const R: ChannelInfo = channel("r", "the reflected part");
+const T: ChannelInfo =
+    channel("t", "the part of the flux along wo that crosses the surface (without 1 / eta^2)");
+const E_INSIDE: ChannelInfo = channel("e.inside", "R + T seen from inside, at 1 / eta");
+const R_INSIDE: ChannelInfo = channel("r.inside", "the reflected part seen from inside, at 1 / eta");
+const T_INSIDE: ChannelInfo = channel("t.inside", "the part that crosses to the outside, at 1 / eta");
+
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
     id: "albedo",
     title: "Directional albedo E",
-    formula: "E(mu) = int f(wo, wi) mu_i dwi",
-    sources: &[(cite::KULLA_CONTY_2017, "slide 'Directional albedo'")],
+    formula: "E(mu) = int f(wo, wi) mu_i dwi; R and T over the two hemispheres of wi",
+    sources: &[
+        (cite::KULLA_CONTY_2017, "slide 'Directional albedo'"),
+        (cite::WALTER_2007, "Eq. 20 and 21 (f of an interface)"),
+    ],
     coordinates: &["mu"],
-    layouts: &[Layout {
-        id: "e",
-        doc: "the directional albedo",
-        channels: &[ChannelInfo { id: "e", meaning: "int f(wo, wi) mu_i dwi", range: [0.0, 1.0] }],
-    }],
+    layouts: &[
+        Layout { id: "e", doc: "the directional albedo", channels: &[E] },
+        Layout { id: "r", doc: "what is reflected", channels: &[R] },
+        Layout { id: "t", doc: "what is transmitted", channels: &[T] },
+        Layout { id: "r-t", doc: "what is reflected, what is transmitted", channels: &[R, T] },
+        Layout { id: "both-sides", doc: "R + T from above and from inside", channels: &[E, E_INSIDE] },
+        Layout {
+            id: "both-sides-r-t",
+            doc: "R and T from above, R and T from inside",
+            channels: &[R, T, R_INSIDE, T_INSIDE],
+        },
+    ],
     extra: &[],
     model: ModelUse::Any("ggx"),
     params: &[],
     laws: &["finite", "range", "energy", "cross-check", "reciprocity"],
     axes: default_axes,
-    notes: "Axes: mu, phi (the view azimuth, for anisotropic models), and any number parameter of the model (alpha or roughness, f0, eta, ...).",
+    notes: "Axes: mu, phi (the view azimuth, for anisotropic models), and any number parameter of the model (alpha or roughness, f0, \
+        eta, ...). t wants a model that transmits, inside one with eta; axes f0_root4 and f0_root4_inverse spread eta above and \
+        below 1.",
     bind,
 };
 
@@ -33,20 +58,19 @@ fn default_axes() -> Vec<Axis> {
 }
 
 struct Albedo {
-    sweep: Sweep,
+    sides: Sides,
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
-    Ok(Box::new(Albedo { sweep: Sweep::new(spec, false)? }))
+    Ok(Box::new(Albedo { sides: Sides::new(spec)? }))
 }
 
 impl Baker for Albedo {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
-        let model = self.sweep.model(at)?;
-        integrate(&*model, self.sweep.view(at), &[Functional::One], tolerance)
+        self.sides.at(&self.sides.models(at)?, self.sides.sweep.view(at), tolerance)
     }
 
     fn rule(&self) -> String {
-        format!("one-dimensional reduction where the model has one; else {}", self.sweep.rule())
+        format!("one-dimensional reduction where the model has one; else {}", self.sides.sweep.rule())
     }
 }

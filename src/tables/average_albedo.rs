@@ -1,14 +1,27 @@
 //! Average albedo: the hemispherical mean of the directional albedo, for energy compensation.
 
 use super::integral::{Functional, integrate};
-use super::sweep::Sweep;
+use super::sides::Sides;
 use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::graded::{Graded, Order};
 use crate::integrate::{Estimate, MAX_CHANNELS, View};
 use crate::models::Brdf;
+use crate::terms::fresnel;
 use std::f64::consts::FRAC_PI_2;
+
+const fn channel(id: &'static str, meaning: &'static str) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [0.0, 1.0] }
+}
+
+const E: ChannelInfo = channel("e-avg", "2 int_0^1 E(mu) mu dmu; of models that transmit the mean of R + T");
+const R: ChannelInfo = channel("r-avg", "2 int_0^1 R(mu) mu dmu");
+const T: ChannelInfo = channel("t-avg", "2 int_0^1 T(mu) mu dmu");
+const E_INSIDE: ChannelInfo = channel("e-avg.inside", "the mean of R + T seen from inside, at 1 / eta");
+const R_INSIDE: ChannelInfo = channel("r-avg.inside", "the mean of R seen from inside, at 1 / eta");
+const T_INSIDE: ChannelInfo =
+    channel("t-avg.inside", "the mean of T seen from inside, at 1 / eta; t-avg / eta^2");
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
@@ -17,12 +30,12 @@ pub static INFO: TableInfo = TableInfo {
     formula: "E_avg = 2 int_0^1 E(mu) mu dmu",
     sources: &[(cite::KULLA_CONTY_2017, "slide 'Average albedo'")],
     coordinates: &[],
-    layouts: &[Layout {
-        id: "e-avg",
-        doc: "the average albedo",
-        channels: &[ChannelInfo { id: "e-avg", meaning: "2 int_0^1 E(mu) mu dmu", range: [0.0, 1.0] }],
-    }],
-    extra: &[],
+    layouts: &[
+        Layout { id: "e-avg", doc: "the average albedo", channels: &[E] },
+        Layout { id: "r-t-avg", doc: "averages of what is reflected and transmitted", channels: &[R, T] },
+        Layout { id: "both-sides", doc: "R + T from above and from inside", channels: &[E, E_INSIDE] },
+    ],
+    extra: &[R_INSIDE, T_INSIDE],
     model: ModelUse::Any("ggx"),
     params: &[],
     laws: &["finite", "range", "energy", "reciprocity"],
@@ -36,57 +49,113 @@ fn default_axes() -> Vec<Axis> {
 }
 
 struct AverageAlbedo {
-    sweep: Sweep,
+    sides: Sides,
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
-    Ok(Box::new(AverageAlbedo { sweep: Sweep::new(spec, false)? }))
+    Ok(Box::new(AverageAlbedo { sides: Sides::new(spec)? }))
 }
 
 impl Baker for AverageAlbedo {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
-        let params = self.sweep.params(at);
-        let model = (self.sweep.info().build)(&params)?;
-        // E changes on the scale mu ~ alpha; a model without alpha is smooth.
-        let alpha = params.number("alpha");
-        let scale = if alpha.is_finite() { alpha.clamp(1e-4, 1.0) } else { 1.0 };
-        average(&*model, scale, tolerance)
+        let params = self.sides.sweep.params(at);
+        let models = self.sides.models(at)?;
+        let range = Range::of(params.number("alpha"), params.number("eta"), self.sides.inside());
+        average_of(&range, models.turns(), self.sides.channels(), tolerance, |view, tolerance| {
+            self.sides.at(&models, view, tolerance)
+        })
     }
 
     fn rule(&self) -> String {
         format!(
             "Gauss-Legendre in mu graded at alpha, over albedos to a quarter of the tolerance ({})",
-            self.sweep.rule()
+            self.sides.sweep.rule()
         )
+    }
+}
+
+/// Where along mu an albedo changes: on the scale of alpha near 0 and, seen from the denser side, near the critical angle.
+#[derive(Debug, Clone)]
+pub struct Range {
+    scale: f64,
+    /// Panels: where each is graded, and its other end.
+    panels: Vec<[f64; 2]>,
+}
+
+impl Range {
+    /// For a width (NaN: a smooth albedo), a relative index (NaN: none) and the side it is seen from.
+    #[must_use]
+    pub fn of(alpha: f64, eta: f64, inside: bool) -> Range {
+        let scale = if alpha.is_finite() { alpha.clamp(1e-4, 1.0) } else { 1.0 };
+        // total reflection: from inside for eta > 1, from above for eta < 1
+        let denser = if inside { eta.min(1.0 / eta) } else { eta };
+        let critical = if denser < 1.0 { fresnel::cos_critical(denser) } else { 0.0 };
+        let panels = if critical > 0.0 {
+            vec![[0.0, 0.5 * critical], [critical, 0.5 * critical], [critical, 1.0]]
+        } else {
+            vec![[0.0, 1.0]]
+        };
+        Range { scale, panels }
+    }
+
+    /// Nodes in mu and weights of a level.
+    fn nodes(&self, level: f64) -> Vec<(f64, f64)> {
+        let mut nodes = Vec::new();
+        for [from, to] in &self.panels {
+            let length = (to - from).abs();
+            let rule = Graded::new(self.scale / length.max(1e-9), Order(1.0, 0.25), level);
+            for (x, w) in rule.node[..rule.len].iter().zip(&rule.weight) {
+                nodes.push((from + (to - from) * x, length * w));
+            }
+        }
+        nodes
     }
 }
 
 /// `2 int E mu dmu`, averaged over the azimuth for a model that depends on it, with the order raised until two orders agree; inner errors are added by their weights.
 ///
 /// # Errors
-/// As [`integrate`].
+/// As [`integrate`](super::integral::integrate).
 pub fn average(model: &dyn Brdf, scale: f64, tolerance: f64) -> Result<Estimate, TexelError> {
-    let mut previous: Option<f64> = None;
+    let range = Range::of(scale, f64::NAN, false);
+    average_of(&range, model.turns(), 1, tolerance, |view, tolerance| {
+        integrate(model, view, &[Functional::One], tolerance)
+    })
+}
+
+/// The same of several channels that `at` gives for a view and a tolerance.
+///
+/// # Errors
+/// Those of `at`.
+pub fn average_of(
+    range: &Range,
+    turns: bool,
+    channels: usize,
+    tolerance: f64,
+    mut at: impl FnMut(View, f64) -> Result<Estimate, TexelError>,
+) -> Result<Estimate, TexelError> {
+    let mut previous: Option<[f64; MAX_CHANNELS]> = None;
     let mut evaluations = 0u32;
     let mut result = Estimate::exact([0.0; MAX_CHANNELS]);
     for level in [6.0, 9.0, 13.0, 19.0, 27.0, 38.0] {
-        let rule = Graded::new(scale, Order(1.0, 0.25), level);
-        let (mut value, mut inner) = (0.0, 0.0);
-        let azimuths = azimuths(model, level);
-        for (&mu, &w) in rule.node[..rule.len].iter().zip(&rule.weight) {
+        let (mut value, mut error) = ([0.0; MAX_CHANNELS], [0.0; MAX_CHANNELS]);
+        let azimuths = azimuths(turns, level);
+        for (mu, w) in range.nodes(level) {
             for &phi in &azimuths {
-                let e = integrate(model, View { mu, phi }, &[Functional::One], 0.25 * tolerance)?;
+                let e = at(View { mu, phi }, 0.25 * tolerance)?;
                 let weight = 2.0 * mu * w / azimuths.len() as f64;
                 evaluations = evaluations.saturating_add(e.evaluations);
-                value += weight * e.value[0];
-                inner += weight * e.error[0];
+                for c in 0..channels {
+                    value[c] += weight * e.value[c];
+                    error[c] += weight * e.error[c];
+                }
             }
         }
-        let outer = previous.map_or(f64::INFINITY, |p| (value - p).abs());
-        result.value[0] = value;
-        result.error[0] = outer + inner;
-        result.evaluations = evaluations;
-        if result.error[0] <= tolerance {
+        for c in 0..channels {
+            error[c] += previous.map_or(f64::INFINITY, |p| (value[c] - p[c]).abs());
+        }
+        result = Estimate { value, error, evaluations };
+        if error[..channels].iter().all(|e| *e <= tolerance) {
             break;
         }
         previous = Some(value);
@@ -96,8 +165,8 @@ pub fn average(model: &dyn Brdf, scale: f64, tolerance: f64) -> Result<Estimate,
 
 /// View azimuths to average over: midpoints of equal parts of a quarter, since both tangents are lines of symmetry.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "levels are small and positive")]
-fn azimuths(model: &dyn Brdf, level: f64) -> Vec<f64> {
-    if !model.turns() {
+fn azimuths(turns: bool, level: f64) -> Vec<f64> {
+    if !turns {
         return vec![0.0];
     }
     let count = (0.5 * level).round() as usize;

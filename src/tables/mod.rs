@@ -4,6 +4,7 @@
 
 pub mod albedo;
 pub mod average_albedo;
+pub mod compensation;
 pub mod dfg;
 pub mod diffusion_kernel;
 pub mod diffusion_profile;
@@ -11,13 +12,18 @@ pub mod diffusion_sampling;
 pub mod driver;
 pub mod fresnel_dielectric;
 pub mod gaussian_fit;
+pub mod generalised_schlick;
+pub mod glass_compensation;
 pub mod integral;
 pub mod kelemen_beckmann;
 pub mod ltc_fit;
+mod memo;
 pub mod ndf;
 pub mod preintegrated_skin;
 pub mod profile;
 pub mod selection;
+pub mod sheen_scaling;
+mod sides;
 pub mod skin_transmittance;
 pub mod spec;
 pub mod sweep;
@@ -34,6 +40,10 @@ pub static TABLES: &[&TableInfo] = &[
     &dfg::INFO,
     &albedo::INFO,
     &average_albedo::INFO,
+    &compensation::INFO,
+    &glass_compensation::INFO,
+    &generalised_schlick::INFO,
+    &sheen_scaling::INFO,
     &fresnel_dielectric::INFO,
     &ndf::INFO,
     &kelemen_beckmann::INFO,
@@ -81,6 +91,12 @@ pub enum TexelError {
     /// A lobe without width has no matrix.
     #[error("the model is a mirror here, a lobe without width; keep the axis off it with `clamp`")]
     NoWidth,
+    /// Something that no rule here integrates.
+    #[error("there is no rule for {what}")]
+    NoRule {
+        /// What.
+        what: &'static str,
+    },
     /// The model refuses its parameters here.
     #[error(transparent)]
     Param(#[from] crate::models::ParamError),

@@ -96,4 +96,24 @@ impl Sweep {
     pub fn model(&self, at: &[f64]) -> Result<Box<dyn Brdf>, TexelError> {
         Ok((self.info.build)(&self.params(at))?)
     }
+
+    /// The model at a point from above or from inside, where its relative index is 1 / eta.
+    ///
+    /// # Errors
+    /// [`TexelError::Param`] where the model refuses the parameters.
+    pub fn model_from(&self, at: &[f64], inside: bool) -> Result<Box<dyn Brdf>, TexelError> {
+        let mut params = self.params(at);
+        if inside {
+            params.set("eta", 1.0 / params.number("eta"));
+        }
+        Ok((self.info.build)(&params)?)
+    }
+
+    /// Does light cross the surface?
+    ///
+    /// # Errors
+    /// [`BindError::Param`] where the model refuses its fixed parameters.
+    pub fn transmits(&self) -> Result<bool, BindError> {
+        Ok((self.info.build)(&self.params)?.transmission().is_some())
+    }
 }

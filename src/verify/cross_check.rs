@@ -24,10 +24,10 @@ const POINTS: u32 = 512;
 
 /// What N draws may have missed: tails that are hit less than once in N, with weights of about 1, do not show in the
 /// standard error (at alpha = 0.002 the rays lost at the horizon are three in a million).
-const UNSEEN: f64 = 2.0 / (REPLICATES * POINTS) as f64;
+pub(super) const UNSEEN: f64 = 2.0 / (REPLICATES * POINTS) as f64;
 
 /// Texels that are checked.
-const TEXELS: usize = 12;
+pub(super) const TEXELS: usize = 12;
 
 /// Estimates `int f g mu_i dwi` for several functionals g by the model's sampler, with standard errors.
 #[must_use]
@@ -56,13 +56,47 @@ fn weight(model: &dyn Brdf, wo: DVec3, u: DVec2) -> (f64, f64) {
         _ => (0.0, 1.0),
     }
 }
+
+/// Estimates the light that leaves a surface: on the side of the view, through it, or both.
+pub(super) fn leaving(
+    model: &dyn Brdf,
+    view: View,
+    reflected: bool,
+    through: bool,
+    seed: u64,
+) -> ReplicateMean {
+    let wo = view.direction();
+    let btdf = model.transmission().filter(|_| through);
+    let [mean] = replicate_mean(seed, REPLICATES, POINTS, |u| {
+        let r = if reflected { weight(model, wo, u).0 } else { 0.0 };
+        let t = btdf.and_then(|t| {
+            let s = t.sample(wo, u).filter(|s| s.pdf > 0.0)?;
+            // the flux along wo: light from wo, seen from the drawn side
+            Some(t.eval(s.wi, wo) * s.wi.z.abs() / s.pdf)
+        });
+        [r + t.unwrap_or(0.0)]
+    });
+    mean
+}
+
+/// Reflected, transmitted, from inside: which light a channel counts, if it is an albedo.
+fn parts(channel: &str) -> Option<(bool, bool, bool)> {
+    let (name, inside) = channel.strip_suffix(".inside").map_or((channel, false), |name| (name, true));
+    match name {
+        "e" => Some((true, true, inside)),
+        "r" => Some((true, false, inside)),
+        "t" => Some((false, true, inside)),
+        _ => None,
+    }
+}
+
 /// Which functional a channel holds, if it is one.
 fn functional(channel: &str) -> Option<Functional> {
     match channel {
         "dfg.scale" => Some(Functional::SchlickComplement),
         "dfg.bias" | "dfg.fc" => Some(Functional::Schlick),
         "dfg.f82" => Some(Functional::F82),
-        "dfg.total" | "dfg.loss" | "e" => Some(Functional::One),
+        "dfg.total" | "dfg.loss" => Some(Functional::One),
         _ => None,
     }
 }
@@ -79,9 +113,18 @@ fn check(case: &Case<'_>) -> Outcome {
         if model.mirror(view.mu).is_some() || view.mu < 1e-6 {
             continue;
         }
+        let seed = 0x51ed + i as u64;
         for (c, channel) in case.table.channels.iter().enumerate() {
-            let Some(g) = functional(&channel.id) else { continue };
-            let [s] = estimate(&*model, view, [g], 0x51ed + i as u64, REPLICATES, POINTS);
+            let s = if let Some(g) = functional(&channel.id) {
+                let [s] = estimate(&*model, view, [g], seed, REPLICATES, POINTS);
+                s
+            } else if let Some((reflected, through, inside)) = parts(&channel.id)
+                && let Ok(model) = sweep.model_from(point.values(), inside)
+            {
+                leaving(&*model, view, reflected, through, seed)
+            } else {
+                continue;
+            };
             let k = texel * case.table.channels.len() + c;
             let (stored, e) = (case.table.values[k], case.table.errors[k]);
             let v = if channel.id == "dfg.loss" { 1.0 - stored } else { stored };

@@ -4,6 +4,7 @@
 //! visible-normal sampling with scrambled Sobol points ([`cross_check`]).
 
 pub mod baseline;
+pub mod complement;
 pub mod cross_check;
 pub mod energy;
 pub mod finding;
@@ -36,6 +37,7 @@ pub static LAWS: &[&Law] = &[
     &total::LAW,
     &reversible::LAW,
     &cross_check::LAW,
+    &complement::LAW,
     &reciprocity::LAW,
 ];
 

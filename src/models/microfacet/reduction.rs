@@ -108,7 +108,8 @@ impl Integrand {
     fn at(&self, m: f64, from_peak: f64) -> f64 {
         let (mu, s, a2) = (self.mu, self.s, self.a * self.a);
         let b = 1.0 - a2;
-        let t2 = ((1.0 - m) * (1.0 + m)).max(0.0);
+        // 1 - m by the exact distance to the peak: at normal incidence the peak is a^2 wide, below the steps of m itself
+        let t2 = (((1.0 - mu) - from_peak) * (1.0 + m)).max(0.0);
         let t = t2.sqrt();
         let sum = mu + m;
         let w = sum * sum;

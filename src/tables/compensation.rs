@@ -1,0 +1,134 @@
+//! What energy compensation reads: the complement of the white albedo, the lobe made of it, and Turquin's factor.
+//!
+//! Kulla and Conty add `F_ms (1 - E(mu_o))(1 - E(mu_i)) / (pi (1 - E_avg)) = F_ms lobe(mu_o) lobe(mu_i)`; Turquin multiplies the
+//! single scattering by `1 + F0 turquin(mu_o)`. 1 - E is stored instead of E because it keeps its digits where E is near 1.
+
+use super::average_albedo::average;
+use super::integral::{Functional, integrate};
+use super::memo::Memo;
+use super::sweep::Sweep;
+use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use crate::cite;
+use crate::grid::Axis;
+use crate::integrate::{Estimate, MAX_CHANNELS};
+use std::f64::consts::PI;
+
+const MISSING: ChannelInfo = ChannelInfo { id: "ms.missing", meaning: "1 - E(mu)", range: [0.0, 1.0] };
+const MISSING_AVG: ChannelInfo = ChannelInfo {
+    id: "ms.missing-avg",
+    meaning: "1 - E_avg, E_avg = 2 int E mu dmu; the same for every mu",
+    range: [0.0, 1.0],
+};
+const LOBE: ChannelInfo = ChannelInfo {
+    id: "ms.lobe",
+    meaning: "(1 - E(mu)) / sqrt(pi (1 - E_avg)); 0 where nothing is missing",
+    range: [0.0, 1e4],
+};
+const TURQUIN: ChannelInfo = ChannelInfo { id: "ms.turquin", meaning: "1 / E(mu) - 1", range: [0.0, 16.0] };
+
+/// Registry entry.
+pub static INFO: TableInfo = TableInfo {
+    id: "compensation",
+    title: "Energy compensation of a reflecting lobe",
+    formula: "1 - E, 1 - E_avg, (1 - E) / sqrt(pi (1 - E_avg)), 1 / E - 1, all of the white lobe (F = 1)",
+    sources: &[
+        (cite::KULLA_CONTY_2017, "the slides on energy conservation (f_ms)"),
+        (cite::TURQUIN_2019, "Eq. 16 (number recalled)"),
+    ],
+    coordinates: &["mu"],
+    layouts: &[
+        Layout {
+            id: "missing",
+            doc: "f_ms = F_ms missing(mu_o) missing(mu_i) / (pi missing_avg)",
+            channels: &[MISSING, MISSING_AVG],
+        },
+        Layout { id: "lobe", doc: "f_ms = F_ms lobe(mu_o) lobe(mu_i)", channels: &[LOBE] },
+        Layout { id: "turquin", doc: "f = f_single (1 + F0 turquin(mu_o))", channels: &[TURQUIN] },
+    ],
+    extra: &[],
+    model: ModelUse::Split("ggx"),
+    params: &[],
+    laws: &["finite", "range", "reciprocity", "complement"],
+    axes: default_axes,
+    notes: "E is that of F = 1. The errors of E and E_avg are carried through to each channel. lobe grows without bound where mu and \
+        alpha go to 0 together (2.8 at alpha = 0.01): give its axis an end. F_ms of a colour is a factor of the shader: F_avg^2 E_avg / \
+        (1 - F_avg (1 - E_avg)), or with F_avg once as on the slides.",
+    bind,
+};
+
+fn default_axes() -> Vec<Axis> {
+    let mut axes = super::dfg::view_and_roughness(32);
+    if let Some(roughness) = axes.last_mut() {
+        roughness.domain = [0.1, 1.0];
+    }
+    axes
+}
+
+struct Compensation {
+    sweep: Sweep,
+    channels: Vec<&'static str>,
+    average: bool,
+    averages: Memo<Estimate>,
+}
+
+fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
+    let channels: Vec<&'static str> = spec.layout.ids().collect();
+    let average = channels.iter().any(|id| ["ms.missing-avg", "ms.lobe"].contains(id));
+    Ok(Box::new(Compensation { sweep: Sweep::new(spec, true)?, channels, average, averages: Memo::new() }))
+}
+
+impl Compensation {
+    /// The channels, with E and `E_avg` to `inner`.
+    fn at(&self, at: &[f64], inner: f64) -> Result<Estimate, TexelError> {
+        let model = self.sweep.model(at)?;
+        let e = integrate(&*model, self.sweep.view(at), &[Functional::One], inner)?;
+        let mut all = Estimate { value: [0.0; MAX_CHANNELS], error: [0.0; MAX_CHANNELS], ..e };
+        let avg = if self.average {
+            let params = self.sweep.params(at);
+            self.averages.get(&params, inner, || average(&*model, params.number("alpha"), inner))?
+        } else {
+            Estimate::exact([0.0; MAX_CHANNELS])
+        };
+        all.evaluations = all.evaluations.saturating_add(if self.average { avg.evaluations } else { 0 });
+        let (albedo, error) = (e.value[0], e.error[0]);
+        // the errors of quadrature may put E a little above 1
+        let (missing, missing_avg) = ((1.0 - albedo).max(0.0), (1.0 - avg.value[0]).max(0.0));
+        for (c, id) in self.channels.iter().enumerate() {
+            (all.value[c], all.error[c]) = match *id {
+                "ms.missing" => (missing, error),
+                "ms.missing-avg" => (missing_avg, avg.error[0]),
+                "ms.turquin" if albedo > 0.0 => (missing / albedo, error / (albedo * albedo)),
+                "ms.lobe" if missing_avg > 0.0 => {
+                    let root = (PI * missing_avg).sqrt();
+                    let value = missing / root;
+                    (value, error / root + 0.5 * value * avg.error[0] / missing_avg)
+                }
+                _ => (0.0, 0.0),
+            };
+        }
+        Ok(all)
+    }
+}
+
+impl Baker for Compensation {
+    fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
+        let mut inner = tolerance;
+        let mut all = self.at(at, inner)?;
+        // quotients magnify the error of E: ask for what they need
+        for _ in 0..3 {
+            let largest = all.error[..self.channels.len()].iter().copied().fold(0.0, f64::max);
+            if largest <= tolerance || largest.is_nan() {
+                break;
+            }
+            inner = (0.3 * inner * tolerance / largest).max(1e-14);
+            let before = all.evaluations;
+            all = self.at(at, inner)?;
+            all.evaluations = all.evaluations.saturating_add(before);
+        }
+        Ok(all)
+    }
+
+    fn rule(&self) -> String {
+        format!("one-dimensional reduction where the model has one; else {}", self.sweep.rule())
+    }
+}

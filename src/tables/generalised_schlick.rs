@@ -1,0 +1,156 @@
+//! How far a generalised Schlick factor moves from F0 to F90 on a rough surface, under a uniform sky.
+//!
+//! With `F = F0 + (F90 - F0) s(wo.wh)`, the albedo is `E_white (F0 + (F90 - F0) s_mean)`. `s` is `(1 - v)^e`, or the curve of a
+//! dielectric, `(F(v, eta) - F0) / (1 - F0)`.
+
+use super::integral::{Functional, integrate};
+use super::sweep::Sweep;
+use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use crate::cite;
+use crate::grid::Axis;
+use crate::integrate::{BATCH, Estimate, MAX_CHANNELS, Nodes, Sums, View, adaptive, ladder};
+use crate::models::{Brdf, Param, Preset};
+
+const fn channel(id: &'static str, meaning: &'static str) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [0.0, 1.0] }
+}
+
+const MEAN: ChannelInfo = channel("schlick.s", "int (f/F) s mu_i dwi / int (f/F) mu_i dwi");
+const PART: ChannelInfo = channel("schlick.part", "int (f/F) s mu_i dwi");
+const VISIBLE: ChannelInfo = channel(
+    "schlick.s-visible",
+    "int s p dwi, p the density of visible normals; what falls below the horizon counts as 0 (Cycles)",
+);
+
+/// Registry entry.
+pub static INFO: TableInfo = TableInfo {
+    id: "generalised-schlick",
+    title: "Mean of a generalised Schlick factor",
+    formula: "s = (1 - v)^e, or (F(v, eta) - F0) / (1 - F0), v = wo.wh",
+    sources: &[
+        (cite::SCHLICK_1994, "Eq. 15 (F, with a free exponent)"),
+        (cite::WALTER_2007, "Eq. 22 (F of a dielectric)"),
+    ],
+    coordinates: &["mu", "alpha"],
+    layouts: &[
+        Layout { id: "s", doc: "E = E_white (F0 + (F90 - F0) s)", channels: &[MEAN] },
+        Layout { id: "part", doc: "E = F0 E_white + (F90 - F0) part", channels: &[PART] },
+        Layout {
+            id: "visible",
+            doc: "as Cycles' ggx_gen_schlick tables: neither weighed by the masking of wi nor normalised",
+            channels: &[VISIBLE],
+        },
+    ],
+    extra: &[],
+    model: ModelUse::Split("ggx"),
+    params: &[
+        Param::choice(
+            "curve",
+            "the power of 1 - v, or a dielectric's Fresnel factor",
+            &["power", "dielectric"],
+        ),
+        Param::number("exponent", "e", "exponent, for curve = power", [0.0, 5e4], Preset::Value(5.0)),
+        Param::number("eta", "eta", "relative index, for curve = dielectric", [1.0, 1e3], Preset::Value(1.5)),
+    ],
+    laws: &["finite", "range", "reciprocity"],
+    axes: default_axes,
+    notes: "Sweep exponent (or schlick_z, exponent = 5 (1 - z) / z) or eta (or f0_root4) on a third axis. With e = 5 the part is the \
+        bias of `dfg`. At eta = 1 nothing is reflected and s is 0. visible takes the sampler of the model, which draws visible normals \
+        for ggx and beckmann.",
+    bind,
+};
+
+fn default_axes() -> Vec<Axis> {
+    super::dfg::view_and_roughness(32)
+}
+
+struct Schlick {
+    sweep: Sweep,
+    channels: Vec<&'static str>,
+    dielectric: bool,
+    /// Axis of the exponent or of eta, and its value where none sweeps it.
+    axis: Option<usize>,
+    fixed: f64,
+}
+
+fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
+    let dielectric = spec.params.choice("curve") == "dielectric";
+    let [id, other] = if dielectric { ["eta", "exponent"] } else { ["exponent", "eta"] };
+    if let Some(idle) = spec.axis(other) {
+        let axis = spec.grid.axes()[idle].quantity.id;
+        return Err(BindError::IdleAxis { kind: spec.kind.id, axis, allowed: format!("mu, alpha, {id}") });
+    }
+    Ok(Box::new(Schlick {
+        sweep: Sweep::new(spec, true)?,
+        channels: spec.layout.ids().collect(),
+        dielectric,
+        axis: spec.axis(id),
+        fixed: spec.params.number(id),
+    }))
+}
+
+impl Schlick {
+    fn curve(&self, at: &[f64]) -> Functional {
+        let value = self.axis.map_or(self.fixed, |i| at[i]);
+        if self.dielectric { Functional::Dielectric(value) } else { Functional::Power(value) }
+    }
+}
+
+impl Baker for Schlick {
+    fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
+        let (model, view, curve) = (self.sweep.model(at)?, self.sweep.view(at), self.curve(at));
+        let mut all = Estimate { value: [0.0; MAX_CHANNELS], error: [0.0; MAX_CHANNELS], evaluations: 0 };
+        let weighed = self.channels.iter().any(|id| *id != "schlick.s-visible");
+        let part = if weighed {
+            integrate(&*model, view, &[curve, Functional::One], 0.25 * tolerance)?
+        } else {
+            all
+        };
+        let visible = if self.channels.contains(&"schlick.s-visible") {
+            visible(&*model, view, curve, tolerance)?
+        } else {
+            all
+        };
+        all.evaluations = part.evaluations.saturating_add(visible.evaluations);
+        let [s, e] = [part.value[0], part.value[1]];
+        for (c, id) in self.channels.iter().enumerate() {
+            (all.value[c], all.error[c]) = match *id {
+                "schlick.part" => (s, part.error[0]),
+                "schlick.s-visible" => (visible.value[0], visible.error[0]),
+                _ if e > 0.0 => (s / e, (part.error[0] + s / e * part.error[1]) / e),
+                _ => (0.0, 0.0),
+            };
+        }
+        Ok(all)
+    }
+
+    fn rule(&self) -> String {
+        self.sweep.rule()
+    }
+}
+
+/// The mean of the curve over the directions that the model's sampler draws.
+fn visible(model: &dyn Brdf, view: View, curve: Functional, tolerance: f64) -> Result<Estimate, TexelError> {
+    if model.mirror(view.mu).is_some() {
+        let mut value = [0.0; MAX_CHANNELS];
+        value[0] = curve.at(view.mu);
+        return Ok(Estimate::exact(value));
+    }
+    let mut densities = [0.0; BATCH];
+    let mut add = |nodes: &Nodes, sums: &mut Sums| {
+        let wo = nodes.wo_above();
+        for (i, p) in densities[..nodes.len].iter_mut().enumerate() {
+            *p = model.pdf(wo, nodes.wi(i));
+        }
+        let term = |i: usize| densities[i] * nodes.weight[i] * curve.at(nodes.cos_d[i]);
+        sums[0] += (0..nodes.len).map(term).sum::<f64>();
+    };
+    let e = match model.chart() {
+        Some(chart) => ladder::integrate(&chart, view, 1, tolerance, &mut add),
+        None => adaptive::integrate(view, 1, tolerance, &mut add),
+    };
+    if e.value[0].is_finite() && e.error[0].is_finite() {
+        return Ok(e);
+    }
+    Err(TexelError::NotFinite { channel: 0, value: e.value[0] })
+}

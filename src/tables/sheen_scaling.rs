@@ -1,0 +1,102 @@
+//! What a sheen leaves to the layers below it, by its directional albedo.
+//!
+//! `f = f_sheen + min(scaling(mu_o), scaling(mu_i)) f_base`, `scaling = 1 - sheen E(mu)`: the albedo scaling of the glTF sheen
+//! extension, with `sheen` the largest component of the colour. A shader that has the colour reads E and forms it itself.
+
+use super::integral::{Functional, integrate};
+use super::sweep::Sweep;
+use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use crate::cite;
+use crate::grid::{Axis, Texel};
+use crate::integrate::{Estimate, MAX_CHANNELS};
+use crate::models::{Param, Preset};
+
+const SCALING: ChannelInfo =
+    ChannelInfo { id: "sheen.scaling", meaning: "max(0, 1 - sheen E(mu))", range: [0.0, 1.0] };
+const E: ChannelInfo =
+    ChannelInfo { id: "sheen.e", meaning: "int f(wo, wi) mu_i dwi of the sheen", range: [0.0, 1.0] };
+
+/// Registry entry.
+pub static INFO: TableInfo = TableInfo {
+    id: "sheen-scaling",
+    title: "Albedo scaling below a sheen",
+    formula: "scaling = 1 - sheen E(mu), E = int f_sheen mu_i dwi",
+    sources: &[
+        (cite::KHR_SHEEN, "the albedo scaling technique"),
+        (cite::ESTEVEZ_KULLA_2017, "Eq. 2 and 3 (f of the sheen)"),
+    ],
+    coordinates: &["mu"],
+    layouts: &[
+        Layout {
+            id: "scaling",
+            doc: "factor of the base: the smaller one of wo and wi",
+            channels: &[SCALING],
+        },
+        Layout { id: "e", doc: "albedo of the sheen: base *= 1 - max(sheen colour) * e", channels: &[E] },
+        Layout { id: "e-scaling", doc: "both", channels: &[E, SCALING] },
+    ],
+    extra: &[],
+    model: ModelUse::Any("charlie"),
+    params: &[Param::number(
+        "sheen",
+        "s",
+        "largest component of the sheen colour",
+        [0.0, 1.0],
+        Preset::Value(1.0),
+    )],
+    laws: &["finite", "range", "reciprocity"],
+    axes: default_axes,
+    notes: "Axis roughness is glTF's (Charlie's r = roughness^2), axis alpha or r is Charlie's own. By default roughness is held at 0.27 \
+        (r = 0.073) and above, the clamp of productions: below it E exceeds 1 at grazing, and a scaled base would be negative.",
+    bind,
+};
+
+fn default_axes() -> Vec<Axis> {
+    let mut axes = super::dfg::view_and_roughness(32);
+    for axis in &mut axes {
+        axis.texel = Texel::Center;
+        if axis.quantity.id == "roughness" {
+            axis.clamp = Some([0.27, 1.0]);
+        }
+    }
+    axes
+}
+
+struct Scaling {
+    sweep: Sweep,
+    scaling: Vec<bool>,
+    sheen: f64,
+}
+
+fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
+    if let Some(i) = spec.axis("sheen") {
+        let axis = spec.grid.axes()[i].quantity.id;
+        let allowed = "mu and the parameters of the model".to_owned();
+        return Err(BindError::IdleAxis { kind: spec.kind.id, axis, allowed });
+    }
+    Ok(Box::new(Scaling {
+        sweep: Sweep::new(spec, false)?,
+        scaling: spec.layout.ids().map(|id| id == "sheen.scaling").collect(),
+        sheen: spec.params.number("sheen"),
+    }))
+}
+
+impl Baker for Scaling {
+    fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
+        let model = self.sweep.model(at)?;
+        let e = integrate(&*model, self.sweep.view(at), &[Functional::One], tolerance)?;
+        let mut all = Estimate { value: [0.0; MAX_CHANNELS], error: [0.0; MAX_CHANNELS], ..e };
+        for (c, scaling) in self.scaling.iter().enumerate() {
+            (all.value[c], all.error[c]) = if *scaling {
+                ((1.0 - self.sheen * e.value[0]).max(0.0), self.sheen * e.error[0])
+            } else {
+                (e.value[0], e.error[0])
+            };
+        }
+        Ok(all)
+    }
+
+    fn rule(&self) -> String {
+        self.sweep.rule()
+    }
+}
