@@ -79,6 +79,7 @@ impl From<PipelineError> for Failure {
             PipelineError::Bake { error: BakeError::Cancelled, .. }
             | PipelineError::Write(WriteError::Cancelled) => Exit::Interrupted,
             PipelineError::Bake { error: BakeError::Missed { .. }, .. }
+            | PipelineError::Size { .. }
             | PipelineError::Laws(_)
             | PipelineError::Range { .. } => Exit::Failed,
             PipelineError::Bake { .. } => Exit::Input,

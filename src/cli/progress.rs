@@ -94,7 +94,7 @@ impl Bars {
                     bar.finish_and_clear();
                 }
             }
-            Event::Finding { .. } => {}
+            Event::Finding { .. } | Event::SizeFound { .. } => {}
         }
     }
 }
@@ -119,7 +119,21 @@ fn line(event: &Event<'_>) -> Option<String> {
     Some(match event {
         Event::Plan { recipe, tables } => {
             let texels: usize = tables.iter().map(|t| t.size.iter().product::<usize>()).sum();
-            format!("recipe {recipe}: {} tables, {texels} texels", tables.len())
+            let open = tables.iter().filter(|t| t.size.contains(&0)).count();
+            let more = if open > 0 { format!(", size of {open} to be found") } else { String::new() };
+            format!("recipe {recipe}: {} tables, {texels} texels{more}", tables.len())
+        }
+        Event::SizeFound { table, size, coordinates, record, seconds, .. } => {
+            let size = size.iter().map(ToString::to_string).collect::<Vec<_>>().join(" x ");
+            format!(
+                "  {table}: {size} texels read to within {:.1e} (asked {:.1e}, {} domain); {}; {} trials, {:.1} s",
+                record.reached,
+                record.error,
+                record.domain,
+                coordinates.join(", "),
+                record.trials,
+                seconds
+            )
         }
         Event::TableFinished {
             table,

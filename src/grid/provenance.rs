@@ -40,6 +40,9 @@ pub struct Provenance {
     /// How far a bilinear reader is from fresh integrals.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub reconstruction: Option<Reconstruction>,
+    /// How the lengths of the axes were found, if they were searched.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub size: Option<SizeRecord>,
     /// Laws that were checked, with their margins.
     pub laws: Vec<LawRecord>,
     /// True if every law held; false if one was waived.
@@ -47,6 +50,23 @@ pub struct Provenance {
     /// Laws let through by the recipe, with the reason given there.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub waived: Vec<Waiver>,
+}
+
+/// How the lengths of the axes were found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SizeRecord {
+    /// Largest error of reading that was asked for, rounding included.
+    pub error: f64,
+    /// Over the `whole` or the `practical` domain.
+    pub domain: String,
+    /// Were other warps tried?
+    pub warps_searched: bool,
+    /// Longest axis that was allowed.
+    pub longest: usize,
+    /// Tables that were tried in full.
+    pub trials: usize,
+    /// Error of reading of the table that was found, as the search measured it.
+    pub reached: f64,
 }
 
 /// The recipe that a file came from.

@@ -1,6 +1,7 @@
 //! What a run tells while it works. One event is one line of `--message-format json`.
 
 use super::Outcome;
+use crate::grid::provenance::SizeRecord;
 use crate::grid::table::Extreme;
 use crate::recipe::Plan;
 use crate::verify::Finding;
@@ -40,6 +41,22 @@ pub enum Event<'a> {
         index: usize,
         /// Number of texels.
         texels: usize,
+    },
+    /// The size of a table was found.
+    SizeFound {
+        /// Table name.
+        table: &'a str,
+        /// Its number in the plan.
+        index: usize,
+        /// Texels along each axis, fastest first.
+        size: Vec<usize>,
+        /// Texture coordinate of each axis as a formula.
+        coordinates: Vec<String>,
+        /// What was asked for, and how it was found.
+        #[serde(flatten)]
+        record: &'a SizeRecord,
+        /// Seconds spent.
+        seconds: f64,
     },
     /// Texels are done. Not part of the JSON stream.
     #[serde(skip)]
@@ -106,7 +123,7 @@ pub struct PlanEntry<'a> {
     pub kind: &'a str,
     /// Model, if it has one.
     pub model: Option<&'a str>,
-    /// Texels along each axis, fastest first.
+    /// Texels along each axis, fastest first; 0 where the length is to be found.
     pub size: Vec<usize>,
     /// Tolerance.
     pub tolerance: f64,
@@ -148,6 +165,13 @@ pub struct ReconstructionEntry {
     pub practical_mean: Option<f64>,
 }
 
+/// Texels along each axis; 0 where the length is to be found.
+fn lengths(table: &crate::recipe::PlannedTable) -> Vec<usize> {
+    let searched = |i: &usize| table.size.as_ref().is_some_and(|s| s.axes.contains(i));
+    let axes = table.bound.spec.grid.axes().iter().enumerate();
+    axes.map(|(i, a)| if searched(&i) { 0 } else { a.len }).collect()
+}
+
 impl<'a> Event<'a> {
     pub(super) fn plan(plan: &'a Plan) -> Event<'a> {
         let tables = plan
@@ -157,7 +181,7 @@ impl<'a> Event<'a> {
                 name: &t.name,
                 kind: t.bound.spec.kind.id,
                 model: t.bound.spec.model.as_ref().map(|(m, _)| m.id),
-                size: t.bound.spec.grid.axes().iter().map(|a| a.len).collect(),
+                size: lengths(t),
                 tolerance: t.tolerance,
                 files: super::file_names(t),
                 hash: &t.hash,

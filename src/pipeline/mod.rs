@@ -4,6 +4,7 @@
 
 mod event;
 mod manifest;
+mod size;
 mod table;
 
 pub use event::{Event, Extremum, Progress, Silent};
@@ -39,6 +40,29 @@ pub enum PipelineError {
         /// Why.
         #[source]
         error: BakeError,
+    },
+    /// No size reaches the error that was asked for.
+    #[error(
+        "table {table}: no table with axes up to {longest} reads to within {asked:e}; the best reached {reached:e}. Ask for a larger \
+         error, allow `longest` or `warps = \"search\"`, store it in more bits, or move an axis off the corner where it bends"
+    )]
+    Size {
+        /// Table name.
+        table: String,
+        /// Error that was asked for.
+        asked: f64,
+        /// Longest axis.
+        longest: usize,
+        /// Least error of all trials.
+        reached: f64,
+    },
+    /// A grid of the search that cannot be.
+    #[error("table {table}: {message}")]
+    SizeGrid {
+        /// Table name.
+        table: String,
+        /// Why.
+        message: String,
     },
     /// Laws that do not hold and are not waived.
     #[error("{} broken; nothing was written", laws(.0.len()))]

@@ -2,10 +2,10 @@
 
 use super::event::ReconstructionEntry;
 use super::manifest::tool;
-use super::{Event, Extremum, FileRecord, PipelineError, Progress, TableRecord};
+use super::{Event, Extremum, FileRecord, PipelineError, Progress, TableRecord, size};
 use crate::encode::{self, EncodeInput, Shape, Storage};
 use crate::grid::Provenance;
-use crate::grid::provenance::{AxisRecord, Encoding, Integration, RecipeId, SCHEMA, Subject};
+use crate::grid::provenance::{AxisRecord, Encoding, Integration, RecipeId, SCHEMA, SizeRecord, Subject};
 use crate::models::source_lines;
 use crate::recipe::{Output, Plan, PlannedTable};
 use crate::tables::driver::{self, Options};
@@ -31,6 +31,15 @@ pub(super) fn make(
     progress: &dyn Progress,
 ) -> Result<Made, PipelineError> {
     let name = planned.name.as_str();
+    let start = Instant::now();
+    let sized = match &planned.size {
+        Some(sizing) => Some(size::resolve(planned, sizing, cancel)?),
+        None => None,
+    };
+    if let Some((found, record)) = sized.as_ref().and_then(|s| Some((s, s.found.as_ref()?))) {
+        progress.event(&size_found(found, record, index, start.elapsed().as_secs_f64()));
+    }
+    let planned = sized.as_ref().unwrap_or(planned);
     let spec = &planned.bound.spec;
     progress.event(&Event::TableStarted { table: name, index, texels: spec.grid.len() });
     let start = Instant::now();
@@ -64,6 +73,18 @@ pub(super) fn make(
     let check_seconds = start.elapsed().as_secs_f64();
     progress.event(&finished(planned, index, &made.record, bake_seconds, check_seconds));
     Ok(made)
+}
+
+fn size_found<'a>(found: &'a PlannedTable, record: &'a SizeRecord, index: usize, seconds: f64) -> Event<'a> {
+    let axes = found.bound.spec.grid.axes();
+    Event::SizeFound {
+        table: &found.name,
+        index,
+        size: axes.iter().map(|a| a.len).collect(),
+        coordinates: axes.iter().map(|a| a.coordinate_formula()).collect(),
+        record,
+        seconds,
+    }
 }
 
 fn encode_output(
@@ -156,6 +177,7 @@ fn provenance(plan: &Plan, planned: &PlannedTable, verified: &Verified) -> Prove
         },
         encoding: None,
         reconstruction: None,
+        size: planned.found.clone(),
         laws: verified.laws().to_vec(),
         verified: verified.waived().is_empty(),
         waived: verified.waived().to_vec(),

@@ -40,9 +40,13 @@ pub(super) fn table(table: &PlannedTable) -> Json {
     put("outputs", outputs.into());
     put("on-miss", if table.on_miss == OnMiss::Fail { "fail" } else { "report" }.into());
     put("reconstruction", if table.reconstruction { "on" } else { "off" }.into());
+    if let Some(size) = &table.size {
+        put("size", size.canonical());
+    }
     let waivers = table.waivers.iter().map(|w| json!({ "law": w.law, "reason": w.reason }));
     put("waive", waivers.collect());
-    put("axis", spec.grid.axes().iter().map(axis).collect());
+    let searched = |i: &usize| table.size.as_ref().is_some_and(|s| s.axes.contains(i));
+    put("axis", spec.grid.axes().iter().enumerate().map(|(i, a)| axis(a, !searched(&i))).collect());
     Json::Object(map)
 }
 
@@ -67,11 +71,14 @@ fn params(table: &PlannedTable) -> Json {
     Json::Object(map)
 }
 
-fn axis(axis: &Axis) -> Json {
+/// `sized`: it has a length of its own.
+fn axis(axis: &Axis, sized: bool) -> Json {
     let mut map = Map::new();
     let mut put = |key: &str, value: Json| drop(map.insert(key.to_owned(), value));
     put("id", axis.quantity.id.into());
-    put("length", axis.len.into());
+    if sized {
+        put("length", axis.len.into());
+    }
     put("domain", axis.domain.to_vec().into());
     put("warp", warp(&axis.warp));
     put("texel", if axis.texel == Texel::Center { "center" } else { "endpoint" }.into());

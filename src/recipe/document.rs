@@ -4,6 +4,7 @@ use super::fault::{Fault, Faults};
 use super::plan::Output;
 use super::read_axis;
 use super::section::{Section, wrong};
+use super::sizing::{self, Sizing};
 use super::{MAX_TABLES, formats};
 use crate::grid::Axis;
 use crate::grid::provenance::Waiver;
@@ -23,6 +24,7 @@ const TABLE: &[&str] = &[
     "outputs",
     "on-miss",
     "reconstruction",
+    "size",
     "waive",
     "axis",
 ];
@@ -51,6 +53,8 @@ pub(super) struct Entry {
     pub(super) outputs: Option<Vec<Option<Output>>>,
     pub(super) on_miss: OnMiss,
     pub(super) reconstruction: bool,
+    /// Axes without a length are searched.
+    pub(super) size: Option<Sizing>,
     pub(super) waivers: Vec<Option<Waiver>>,
     /// None: the kind's own. An axis that could not be read is none.
     pub(super) axes: Option<Vec<Option<Axis>>>,
@@ -82,6 +86,8 @@ fn entry(table: &DeTable<'_>, path: String, faults: &mut Faults) -> Entry {
     section.require("kind", "kind = \"dfg\"", faults);
     section.require("name", "name = \"ggx-dfg\"", faults);
     let on_miss = section.word("on-miss", &[("fail", OnMiss::Fail), ("report", OnMiss::Report)], faults);
+    let mut size = sizing::read(&section, faults);
+    let axes = axes(&section, size.as_mut(), faults);
     Entry {
         name: section.text("name", faults),
         kind: section.text("kind", faults),
@@ -96,11 +102,29 @@ fn entry(table: &DeTable<'_>, path: String, faults: &mut Faults) -> Entry {
             .word("reconstruction", &[("on", true), ("off", false)], faults)
             .unwrap_or(true),
         waivers: waivers(&section, faults),
-        axes: section
-            .tables("axis", "[[table.axis]]", faults)
-            .map(|axes| axes.into_iter().map(|(path, axis)| read_axis::read(axis, &path, faults)).collect()),
+        size,
+        axes,
         path,
     }
+}
+
+/// The axes; those without a length are noted in `size`.
+fn axes(section: &Section<'_>, size: Option<&mut Sizing>, faults: &mut Faults) -> Option<Vec<Option<Axis>>> {
+    let tables = section.tables("axis", "[[table.axis]]", faults)?;
+    let open = |table: &&DeTable<'_>| size.is_some() && !table.contains_key("length");
+    let searched: Vec<usize> = (0..tables.len()).filter(|i| open(&tables[*i].1)).collect();
+    let axes = tables
+        .into_iter()
+        .enumerate()
+        .map(|(i, (path, axis))| read_axis::read(axis, &path, searched.contains(&i), faults))
+        .collect();
+    if let Some(size) = size {
+        if searched.is_empty() {
+            faults.value(section.path("size"), Fault::NothingToSize);
+        }
+        size.axes = searched;
+    }
+    Some(axes)
 }
 
 fn params(section: &Section<'_>, faults: &mut Faults) -> Map<String, Json> {

@@ -90,6 +90,9 @@ pub enum Fault {
         /// What is allowed.
         allowed: String,
     },
+    /// A size to be found for a table whose axes all have a length.
+    #[error("`size` has nothing to find: every axis has a `length`")]
+    NothingToSize,
     /// A text that is empty or too long.
     #[error("`{key}` {}", if *got == 0 { "is empty".to_owned() } else { format!("has {got} characters") })]
     TextLength {
@@ -234,6 +237,7 @@ impl Fault {
             Fault::MissingKey { example, .. } => return Some(format!("add `{example}`")),
             Fault::Type { remedy, .. } => (*remedy)?,
             Fault::NotUtf8 => "save it as UTF-8",
+            Fault::NothingToSize => "leave out the `length` of the axes to be searched, or leave out `size`",
             Fault::WarpForm { .. } => {
                 "write { power = p }, { one-minus-power = p } or { coupled = \"alpha\", power = 2.0, scale = 1.0, exponent = 1.0 }"
             }

@@ -16,6 +16,7 @@
 //! outputs = ["exr:half"]           # container:storage; default: ["exr:half"]
 //! on-miss = "fail"                 # or "report": a texel that misses the tolerance is counted, not an error
 //! reconstruction = "on"            # or "off": measure the reader's error between texels
+//! # size = "auto"                  # instead of lengths: find them, see below
 //!
 //! [[table.axis]]                   # first is x (fastest), second y, third z; none at all: the kind's defaults
 //! id = "mu"                        # required; a quantity: mu, roughness, alpha, eta, ...
@@ -38,6 +39,9 @@
 //!   [`Warp`](crate::grid::Warp).
 //! * **Default tolerance**: half a step near 1 of the finest storage among the outputs: 2^-12 for half, 2^-25 for
 //!   float, 0.5/65535 for unorm16.
+//! * **Size from an error**: `size = "auto"` finds the smallest table that a bilinear reader of the stored numbers reads to
+//!   within 2^-10 over the whole domain. `size = { error = 1e-3, domain = "practical", warps = "search", longest = 256 }` says it
+//!   in full. Axes with a `length` keep it, the others are searched; `warps = "search"` tries other warps on those.
 //! * **Laws** that a table is known to break are waived by `waive = [{ law = "energy", reason = "..." }]`; the file
 //!   then says that it is not verified, with the reason. A law that the kind does not check cannot be waived.
 //!
@@ -77,6 +81,7 @@ mod plan;
 mod preset;
 mod read_axis;
 mod section;
+mod sizing;
 mod span;
 
 pub use diagnostic::{Diagnostic, RecipeError};
@@ -84,6 +89,7 @@ pub use fault::Fault;
 pub use load::{LoadError, load};
 pub use plan::{Output, Plan, PlanError, PlannedTable, TableRequest};
 pub use preset::{PRESETS, Preset, preset};
+pub use sizing::Sizing;
 
 use crate::encode::{ENCODERS, Storage};
 use std::sync::LazyLock;

@@ -5,9 +5,10 @@ use super::canonical;
 use super::document::{Document, Entry};
 use super::fault::{Fault, Faults};
 use super::section::unknown_word;
+use super::sizing::Sizing;
 use super::{Format, Stored, TOLERANCE, formats, name};
 use crate::encode::{self, FileOption, Shape, Storage};
-use crate::grid::provenance::Waiver;
+use crate::grid::provenance::{SizeRecord, Waiver};
 use crate::tables::driver::OnMiss;
 use crate::tables::spec::Request;
 use crate::tables::{Bound, ChannelInfo, TableInfo};
@@ -43,6 +44,10 @@ pub struct PlannedTable {
     pub outputs: Vec<Output>,
     /// Measure the error of a reader between texels?
     pub reconstruction: bool,
+    /// What its size must achieve, if that is to be found; the axes then have lengths that stand in.
+    pub size: Option<Sizing>,
+    /// How its size was found, once it is.
+    pub found: Option<SizeRecord>,
     /// Laws that it may break, in the order of [`LAWS`](crate::verify::LAWS).
     pub waivers: Vec<Waiver>,
     /// Everything above that the recipe decides, under the keys of a recipe, in fixed order.
@@ -50,6 +55,26 @@ pub struct PlannedTable {
     /// blake3 of the canonical form and the program version, in hex. The name of the recipe is not in it; that of the
     /// table is.
     pub hash: String,
+}
+
+impl PlannedTable {
+    /// The same table on a grid of the size that was found. The recipe, and so the hash, remain what they were.
+    #[must_use]
+    pub fn sized(&self, bound: Bound, found: SizeRecord) -> PlannedTable {
+        PlannedTable {
+            name: self.name.clone(),
+            bound,
+            tolerance: self.tolerance,
+            on_miss: self.on_miss,
+            outputs: self.outputs.clone(),
+            reconstruction: self.reconstruction,
+            size: self.size.clone(),
+            found: Some(found),
+            waivers: self.waivers.clone(),
+            canonical: self.canonical.clone(),
+            hash: self.hash.clone(),
+        }
+    }
 }
 
 /// A file to write.
@@ -101,6 +126,8 @@ pub struct TableRequest {
     pub outputs: Vec<Output>,
     /// Measure the error of a reader between texels?
     pub reconstruction: bool,
+    /// What its size must achieve. With axes in the request, [`Sizing::axes`] are those whose lengths stand in.
+    pub size: Option<Sizing>,
     /// Laws that it may break.
     pub waivers: Vec<Waiver>,
 }
@@ -116,6 +143,7 @@ impl TableRequest {
             on_miss: OnMiss::Fail,
             outputs: vec![default_output()],
             reconstruction: true,
+            size: None,
             waivers: Vec::new(),
         }
     }
@@ -209,6 +237,7 @@ fn entry(i: usize, table: TableRequest) -> Entry {
         outputs: Some(table.outputs.into_iter().map(Some).collect()),
         on_miss: table.on_miss,
         reconstruction: table.reconstruction,
+        size: table.size,
         waivers: table.waivers.into_iter().map(Some).collect(),
         axes: axes.map(|axes| axes.into_iter().map(Some).collect()),
     }
@@ -286,10 +315,19 @@ fn table(entry: Entry, tolerance: Option<f64>, faults: &mut Faults) -> Option<Pl
         on_miss: entry.on_miss,
         outputs,
         reconstruction: entry.reconstruction,
+        size: None,
+        found: None,
         waivers: waivers?,
         canonical: Json::Null,
         hash: String::new(),
     };
+    planned.size = entry.size.map(|mut size| {
+        if entry.axes.is_none() {
+            // the kind's own axes: all of them
+            size.axes = (0..planned.bound.spec.grid.axes().len()).collect();
+        }
+        size
+    });
     planned.canonical = canonical::table(&planned);
     planned.hash = canonical::hash(&planned.canonical);
     Some(planned)

@@ -2,6 +2,7 @@
 
 use super::fault::{Fault, Faults};
 use super::section::{Section, as_number, unknown_word, wrong};
+use super::sizing::PROVISIONAL;
 use crate::grid::quantity::QUANTITIES;
 use crate::grid::{Axis, Direction, Quantity, Texel, Warp};
 use toml::de::{DeTable, DeValue};
@@ -16,10 +17,13 @@ const WORDS: &[(&str, Warp)] = &[
 ];
 
 /// Reads an axis; none if its quantity or its length cannot be read.
-pub(super) fn read(table: &DeTable<'_>, path: &str, faults: &mut Faults) -> Option<Axis> {
+/// `searched`: its length will be found.
+pub(super) fn read(table: &DeTable<'_>, path: &str, searched: bool, faults: &mut Faults) -> Option<Axis> {
     let section = Section::new(table, path, "[[table.axis]]", KEYS, faults);
     section.require("id", "id = \"mu\"", faults);
-    section.require("length", "length = 64", faults);
+    if !searched {
+        section.require("length", "length = 64", faults);
+    }
     let quantity = section.text("id", faults).and_then(|id| {
         let found = Quantity::find(&id);
         if found.is_none() {
@@ -27,7 +31,7 @@ pub(super) fn read(table: &DeTable<'_>, path: &str, faults: &mut Faults) -> Opti
         }
         found
     });
-    let length = section.count("length", faults);
+    let length = if searched { Some(PROVISIONAL) } else { section.count("length", faults) };
     let texels = [("center", Texel::Center), ("endpoint", Texel::Endpoint)];
     let texel = section.word("texel", &texels, faults).unwrap_or(Texel::Endpoint);
     let directions = [("ascending", Direction::Ascending), ("descending", Direction::Descending)];

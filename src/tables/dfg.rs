@@ -201,6 +201,13 @@ impl Lobe {
 }
 
 impl Dfg {
+    /// Is the white albedo above 1 by more than its own estimate?
+    fn above_one(&self, split: &Estimate) -> bool {
+        let of = |g| self.functionals.iter().position(|f| *f == g).map(|i| split.value[i] - split.error[i]);
+        let sum = of(Functional::SchlickComplement).zip(of(Functional::Schlick)).map(|(a, b)| a + b);
+        of(Functional::One).or(sum).is_some_and(|least| least > 1.0)
+    }
+
     /// Loss and rest, in this order and alone.
     fn factored(&self) -> bool {
         matches!(self.parts[..], [Part::Loss, Part::Rest])
@@ -216,7 +223,14 @@ impl Baker for Dfg {
             // the rest adds two errors
             let twice = self.parts.iter().any(|p| matches!(p, Part::Rest));
             let share = if twice { 0.5 * tolerance } else { tolerance };
-            split = integrate(&*self.sweep.model(at)?, view, &self.functionals, share)?;
+            let model = self.sweep.model(at)?;
+            split = integrate(&*model, view, &self.functionals, share)?;
+            if self.sweep.info().laws.passive && self.above_one(&split) {
+                // no white albedo is above 1: this estimate is one of the few that are too small
+                let again = integrate(&*model, view, &self.functionals, 0.1 * share)?;
+                split =
+                    Estimate { evaluations: split.evaluations.saturating_add(again.evaluations), ..again };
+            }
             all.evaluations = split.evaluations;
         }
         let of = |g: Functional| {

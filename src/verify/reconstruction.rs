@@ -77,7 +77,7 @@ impl<'a> Probe<'a> {
         let mut worst: Vec<&Compared<'_>> = regular.iter().collect();
         // the sort is stable, so equal errors keep the order of the grid
         worst.sort_by(|a, b| b.largest.total_cmp(&a.largest));
-        let practical = worst.iter().filter(|c| is_practical(grid, &c.fresh.point)).take(SEARCHED);
+        let practical = worst.iter().filter(|c| in_practical_domain(grid, &c.fresh.point)).take(SEARCHED);
         let cells: Vec<[f64; MAX_AXES]> =
             worst.iter().take(SEARCHED).chain(practical).flat_map(|c| around(grid, &c.fresh.x)).collect();
         let fine = self.integrate(&cells);
@@ -88,7 +88,7 @@ impl<'a> Probe<'a> {
             points: (regular.len() + searched.len()) as u64,
             whole: whole.unwrap_or_else(nothing),
             practical: has_practical(grid)
-                .then(|| self.spread(&regular, &searched, |p| is_practical(grid, p)))
+                .then(|| self.spread(&regular, &searched, |p| in_practical_domain(grid, p)))
                 .flatten(),
         }
     }
@@ -195,7 +195,9 @@ fn has_practical(grid: &Grid) -> bool {
     grid.axes().iter().any(|a| ["mu", "alpha"].contains(&a.quantity.base_id()))
 }
 
-fn is_practical(grid: &Grid, point: &Point) -> bool {
+/// Is a point in the practical domain?
+#[must_use]
+pub fn in_practical_domain(grid: &Grid, point: &Point) -> bool {
     grid.axes().iter().zip(point.values()).all(|(axis, &v)| match axis.quantity.base_id() {
         "mu" => v >= PRACTICAL_MU,
         "alpha" => v >= PRACTICAL_ALPHA,
