@@ -35,6 +35,9 @@ pub static PRESETS: &[Preset] = &[
         "energy-compensation",
         "directional and average albedo of white GGX and Beckmann, for multiple scattering"
     ),
+    preset!("energy", "albedos of reflecting lobes, what they lose, and factors and lobes that give it back"),
+    preset!("glass", "rough glass from both sides: reflection, transmission, averages, compensation"),
+    preset!("layers", "split sums with F82, cloth and diffuse channels; sheens and clear coats"),
     preset!("fresnel", "dielectric Fresnel reflectance from both sides, for water, glass and skin"),
     preset!(
         "ggx",

@@ -89,7 +89,7 @@ impl Compensation {
         } else {
             Estimate::exact([0.0; MAX_CHANNELS])
         };
-        all.evaluations = all.evaluations.saturating_add(if self.average { avg.evaluations } else { 0 });
+        // the average is shared by the texels of a row and counted by none: who computed it depends on the threads
         let (albedo, error) = (e.value[0], e.error[0]);
         // the errors of quadrature may put E a little above 1
         let (missing, missing_avg) = ((1.0 - albedo).max(0.0), (1.0 - avg.value[0]).max(0.0));

@@ -151,7 +151,8 @@ impl Glass {
         let means = if averages { self.means(at, [&*models[0], &*models[1]], inner)? } else { nothing };
         let shares = shares(&means, self.sweep.params(at).number("eta"));
         let mut all = nothing;
-        all.evaluations = [above, inside, means].iter().fold(0, |n, e| n.saturating_add(e.evaluations));
+        // means are shared by the texels of a row and counted by none: who computed them depends on the threads
+        all.evaluations = above.evaluations.saturating_add(inside.evaluations);
         for (c, id) in self.channels.iter().enumerate() {
             (all.value[c], all.error[c]) = match *id {
                 "ms.missing" => (above.value[0], above.error[0]),

@@ -44,9 +44,9 @@ pub static INFO: TableInfo = TableInfo {
         [0.0, 1.0],
         Preset::Value(1.0),
     )],
-    laws: &["finite", "range", "reciprocity"],
+    laws: &["finite", "range"],
     axes: default_axes,
-    notes: "Axis roughness is glTF's (Charlie's r = roughness^2), axis alpha or r is Charlie's own. By default roughness is held at 0.27 \
+    notes: "Axis roughness is glTF's (Charlie's r = roughness^2), axis alpha or r is Charlie's own. The model need not be reciprocal: E belongs to the view. By default roughness is held at 0.27 \
         (r = 0.073) and above, the clamp of productions: below it E exceeds 1 at grazing, and a scaled base would be negative.",
     bind,
 };
@@ -69,11 +69,6 @@ struct Scaling {
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
-    if let Some(i) = spec.axis("sheen") {
-        let axis = spec.grid.axes()[i].quantity.id;
-        let allowed = "mu and the parameters of the model".to_owned();
-        return Err(BindError::IdleAxis { kind: spec.kind.id, axis, allowed });
-    }
     Ok(Box::new(Scaling {
         sweep: Sweep::new(spec, false)?,
         scaling: spec.layout.ids().map(|id| id == "sheen.scaling").collect(),

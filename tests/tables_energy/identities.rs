@@ -227,3 +227,34 @@ fn clear_coats_at_a_fixed_f0_and_the_scaling_below_a_sheen() {
     let expected = 1.0 - 0.5 * 1.251_813_172_483_886_2e-1;
     assert!((texel(&scaling, &[libm::cos(0.5), 0.5], 1e-10).0 - expected).abs() < 1e-9);
 }
+
+#[test]
+fn estimates_of_reflection_and_transmission_are_honest() {
+    let (info, _) = brdfbake::models::find("ggx-glass").unwrap();
+    let mut seeds = verify::seeds::Seeds::new(7);
+    let mut low = 0;
+    for _ in 0..25 {
+        let z = 0.1 + 0.7 * seeds.unit();
+        let (roughness, mu) = (0.1 + 0.9 * seeds.unit(), seeds.unit());
+        let eta = (1.0 + z * z) / (1.0 - z * z);
+        for eta in [eta, 1.0 / eta] {
+            let mut params = brdfbake::models::Params::resolve(info.id, info.params, []).unwrap();
+            for key in ["alpha", "alpha_x", "alpha_y"] {
+                params.set(key, roughness * roughness);
+            }
+            params.set("eta", eta);
+            let model = (info.build)(&params).unwrap();
+            let parts = |tolerance| {
+                let t = model.transmission().unwrap().albedo(mu, tolerance).unwrap();
+                [Some(t), model.reduced_albedo(mu, tolerance)]
+            };
+            for (rough, fine) in parts(1.2e-4).into_iter().zip(parts(1e-7)) {
+                let (Some(rough), Some(fine)) = (rough, fine) else { continue };
+                let off = (rough.value[0] - fine.value[0]).abs() - fine.error[0];
+                low += usize::from(off > rough.error[0]);
+                assert!(off <= 4.0 * rough.error[0], "mu {mu}, r {roughness}, eta {eta}: off by {off:e}");
+            }
+        }
+    }
+    assert!(low <= 1, "{low} of 75 estimates are too small");
+}
