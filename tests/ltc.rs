@@ -36,6 +36,7 @@ fn explore() {
     let level: f64 = std::env::var("LEVEL").map_or(15.0, |l| l.parse().unwrap());
     let mut stats = [[0.0f64; 4]; 3];
     let mut worse = 0;
+    let mut missed = 0;
     let mut evals = 0u64;
     for (t, a, mu, alpha, f, m) in &rows {
         let k = ((t * 64 + a) * 4) as usize;
@@ -58,15 +59,15 @@ fn explore() {
         }
         evals += u64::from(f.evaluations);
         let e = f.fit.inverse;
-        let c = f.coarse.inverse;
-        let diff = [e.m11 - c.m11, e.m13 - c.m13, e.m31 - c.m31, e.m33 - c.m33].iter().fold(0.0, |m: f64, d| m.max(d.abs()));
+        let diff = f.error.entries;
         let best = s.l3.min(r.l3);
+        missed += usize::from(diff > 2.4e-4);
         if o.l3 > best * (1.0 + 1e-6) || diff > 2.4e-4 {
             if o.l3 > best * (1.0 + 1e-6) { worse += 1; }
-            println!("{t} {a} mu {mu:.4} alpha {alpha:.5} ours {:.4e} (own {:.4e}) shipped {:.4e} refit {:.4e}, tv {:.4} {:.4}; diff {diff:.1e} n {} [{:.5} {:.5} {:.5} {:.6}] {q:?}", o.l3, f.fit.l3, s.l3, r.l3, o.variation, s.variation, f.evaluations, e.m11, e.m31, e.m13, e.m33);
+            if o.l3 > best * (1.0 + 1e-6) || std::env::var_os("ALL").is_some() { println!("{t} {a} mu {mu:.4} alpha {alpha:.5} ours {:.4e} (own {:.4e}) shipped {:.4e} refit {:.4e}, tv {:.4} {:.4}; diff {diff:.1e} n {} [{:.5} {:.5} {:.5} {:.6}] {q:?}", o.l3, f.fit.l3, s.l3, r.l3, o.variation, s.variation, f.evaluations, e.m11, e.m31, e.m13, e.m33); }
         }
     }
-    println!("worse {worse}, {stats:?} evals/texel {}", evals / 4096);
+    println!("worse {worse}, missed {missed} {stats:?} evals/texel {}", evals / 4096);
 }
 
 #[test]
@@ -84,5 +85,50 @@ fn levels() {
             let j = ltc_fit::judge(&*m, mu.into(), &f.fit.inverse, level).unwrap();
             println!("  {level} {:.6} {:.6} {:.9}", j.l3, j.variation, j.albedo);
         }
+    }
+}
+
+#[test]
+#[ignore = "exploration"]
+fn convergence() {
+    for (t, a) in [(0, 1), (1, 1)] {
+        let r = f64::from(a) / 63.0;
+        let alpha = (r * r).max(1e-5);
+        let x = f64::from(t) / 63.0;
+        let mu = (1.0 - x * x).max(libm::cos(1.57));
+        let m = model("ggx", &format!("{{\"alpha\": {alpha}}}"));
+        println!("{t} {a} mu {mu} alpha {alpha}");
+        ltc_fit::fit(&*m, mu.into(), Family::Even, 1e-5).unwrap();
+    }
+}
+
+#[test]
+#[ignore = "exploration"]
+fn honesty() {
+    for tolerance in [1e-2, 1e-3, 2.4e-4] {
+        let (mut worst, mut over, mut largest, mut n) = (0.0f64, 0, 0.0f64, 0);
+        let mut ratios = Vec::new();
+        for t in (0..64).step_by(3) {
+            for a in (0..64).step_by(3) {
+                let r = f64::from(a) / 63.0;
+                let alpha = (r * r).max(1e-5);
+                let x = f64::from(t) / 63.0;
+                let mu = (1.0 - x * x).max(libm::cos(1.57));
+                let m = model("ggx", &format!("{{\"alpha\": {alpha}}}"));
+                let f = ltc_fit::fit(&*m, mu.into(), Family::Even, tolerance).unwrap();
+                let truth = ltc_fit::fit(&*m, mu.into(), Family::Even, 3e-5).unwrap().fit.inverse;
+                let entries = |i: &Inverse| [i.m11, i.m13, i.m31, i.m33];
+                let (e, q) = (entries(&f.fit.inverse), entries(&truth));
+                let est = f.error.entries.max(1e-9);
+                let err = (0..4).map(|k| (e[k] - q[k]).abs()).fold(0.0, f64::max);
+                n += 1;
+                largest = largest.max(err);
+                over += usize::from(err > est);
+                worst = worst.max(err / est);
+                ratios.push(err / est);
+            }
+        }
+        ratios.sort_by(f64::total_cmp);
+        println!("{tolerance:e}: largest {largest:.1e}, over {over} of {n}, worst ratio {worst:.1}, median {:.2}, p90 {:.2}", ratios[n / 2], ratios[9 * n / 10]);
     }
 }

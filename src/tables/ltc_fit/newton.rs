@@ -4,8 +4,7 @@
 //! there, so a step is relative to the lobe's own widths. The sets of matrices of every [`Family`] are closed under their steps.
 
 use super::Family;
-use super::objective::{N, Objective, objective};
-use super::target::Node;
+use super::objective::{N, Objective, Slices, objective};
 use crate::terms::ltc::Inverse;
 
 /// Most evaluations of the objective.
@@ -14,11 +13,11 @@ const EVALUATIONS: usize = 60;
 /// Longest step in a parameter.
 const LONGEST: f64 = 0.4;
 
-/// Steps shorter than this end the search; the next one would be its square.
-const SHORTEST: f64 = 1e-7;
+/// The search ends where the next step is expected to be shorter than this.
+const SHORTEST: f64 = 1e-8;
 
 /// Damping relative to the diagonal: at the start, and where the search gives up.
-const DAMPING: [f64; 2] = [1e-3, 1e10];
+const DAMPING: [f64; 2] = [1e-6, 1e10];
 
 /// The end of a search.
 #[derive(Debug, Clone, Copy)]
@@ -42,11 +41,12 @@ pub(super) fn step(b: &Inverse, d: [f64; N]) -> Inverse {
 }
 
 /// The nearest local minimum below `start`.
-pub(super) fn minimise(nodes: &[Node], start: Inverse, family: Family) -> Optimum {
+pub(super) fn minimise(nodes: &Slices, start: Inverse, family: Family) -> Optimum {
     let mut inverse = start.scaled(1.0 / start.m22);
     let mut here = objective(nodes, &inverse);
     let mut damping = DAMPING[0];
     let mut evaluations = 1;
+    let mut before = 0.0;
     while evaluations < EVALUATIONS && damping < DAMPING[1] {
         let Some(d) = direction(&here, family, damping) else {
             damping *= 10.0;
@@ -60,9 +60,11 @@ pub(super) fn minimise(nodes: &[Node], start: Inverse, family: Family) -> Optimu
         if next.minor() > 0.0 && next.m22 > 0.0 && there.value <= here.value {
             (inverse, here) = (next, there);
             damping *= 0.1;
-            if length < SHORTEST {
+            // near the minimum each step is the square of the one before, or half of it if the fit is perfect
+            if length * (length / before).min(1.0) < SHORTEST {
                 break;
             }
+            before = length;
         } else {
             if length < SHORTEST {
                 break;
