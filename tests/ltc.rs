@@ -132,3 +132,16 @@ fn honesty() {
         println!("{tolerance:e}: largest {largest:.1e}, over {over} of {n}, worst ratio {worst:.1}, median {:.2}, p90 {:.2}", ratios[n / 2], ratios[9 * n / 10]);
     }
 }
+
+#[test]
+#[ignore = "exploration"]
+fn timing() {
+    use std::time::Instant;
+    let m = model("ggx", "{\"alpha\": 0.6}");
+    for level in [8.0, 20.0, 54.0] {
+        let f = ltc_fit::fit(&*m, 0.8.into(), Family::Even, 1e-2).unwrap();
+        let start = Instant::now();
+        for _ in 0..20 { ltc_fit::judge(&*m, 0.8.into(), &f.fit.inverse, level).unwrap(); }
+        println!("{level} {:?}", start.elapsed() / 20);
+    }
+}

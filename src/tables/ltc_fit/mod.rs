@@ -96,6 +96,9 @@ pub struct FitError {
 /// Levels of the charts.
 const LEVELS: [f64; 9] = [4.0, 5.6, 8.0, 11.0, 15.0, 20.0, 27.0, 38.0, 54.0];
 
+/// Relative error below which Newton's method is needed in full at every level.
+const NEARLY_PERFECT: f64 = 1e-3;
+
 /// Fits the model at a view, until the entries of the matrix over its middle one are good to `tolerance`.
 ///
 /// A surface that reflects nothing at this view gets the clamped cosine and no error: nothing is multiplied by it.
@@ -109,22 +112,38 @@ pub fn fit(model: &dyn Brdf, view: View, family: Family, tolerance: f64) -> Resu
     let mut nodes = Slices::default();
     let mut evaluations = 0u32;
     let mut fits: Vec<Fit> = Vec::new();
+    let mut last: Option<(newton::Optimum, f64)> = None;
     for level in LEVELS {
         let target = Target::new(model, view, level)?;
         if target.albedo <= f64::MIN_POSITIVE {
             fits.push(Fit { inverse: Inverse::COSINE, l3: 0.0, variation: 0.0, albedo: 0.0 });
             break;
         }
-        let start = fits.last().map_or_else(|| family.nearest(&target.moments()), |f| f.inverse);
-        target.nodes_for(&start, &mut nodes);
-        let optimum = newton::minimise(&nodes, start, family);
-        evaluations = evaluations.saturating_add(optimum.evaluations);
+        let found = match &last {
+            None => {
+                let start = family.nearest(&target.moments());
+                target.nodes_for(&start, &mut nodes);
+                newton::minimise(&nodes, start, family)
+            }
+            Some((last, l3)) => {
+                target.nodes_for(&last.inverse, &mut nodes);
+                // the Hessian of a nearly perfect fit vanishes with its error, and is that of no other nodes
+                if *l3 > NEARLY_PERFECT {
+                    newton::refine(&nodes, last, family)
+                } else {
+                    newton::minimise(&nodes, last.inverse, family)
+                }
+            }
+        };
+        evaluations = evaluations.saturating_add(found.evaluations);
         fits.push(Fit {
-            inverse: optimum.inverse,
-            l3: libm::cbrt(optimum.value / target.cube),
-            variation: objective::variation(&target.nodes, &optimum.inverse),
+            inverse: found.inverse,
+            l3: libm::cbrt(found.at.value / target.cube),
+            variation: objective::variation(&target.nodes, &found.inverse),
             albedo: target.albedo,
         });
+        let l3 = fits.last().map_or(0.0, |f| f.l3);
+        last = Some((newton::Optimum { evaluations: 0, ..found }, l3));
         // NaN is never done
         if fits.len() > 2 && error(&fits).entries <= tolerance {
             break;

@@ -4,7 +4,7 @@
 //! there, so a step is relative to the lobe's own widths. The sets of matrices of every [`Family`] are closed under their steps.
 
 use super::Family;
-use super::objective::{N, Objective, Slices, objective};
+use super::objective::{N, Objective, Slices, gradient, objective};
 use crate::terms::ltc::Inverse;
 
 /// Most evaluations of the objective.
@@ -19,11 +19,19 @@ const SHORTEST: f64 = 1e-8;
 /// Damping relative to the diagonal: at the start, and where the search gives up.
 const DAMPING: [f64; 2] = [1e-6, 1e10];
 
+/// [`refine`] gives up if its first step is longer than this, or after this many.
+const NEARBY: f64 = 0.03;
+const STEPS: usize = 4;
+
+/// [`refine`] ends where the next step is expected to be shorter than this.
+const ENOUGH: f64 = 1e-6;
+
 /// The end of a search.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Optimum {
     pub(super) inverse: Inverse,
-    pub(super) value: f64,
+    /// At the last matrix but for the last step.
+    pub(super) at: Objective,
     pub(super) evaluations: u32,
 }
 
@@ -73,7 +81,32 @@ pub(super) fn minimise(nodes: &Slices, start: Inverse, family: Family) -> Optimu
         }
     }
     let evaluations = u32::try_from(evaluations * nodes.len()).unwrap_or(u32::MAX);
-    Optimum { inverse, value: here.value, evaluations }
+    Optimum { inverse, at: here, evaluations }
+}
+
+/// The minimum again, on other nodes: a few steps with the Hessian that is known, or a new search if they do not converge.
+///
+/// The Hessians of two levels differ by their quadrature errors, a percent or so, so each step leaves that part of the
+/// distance.
+pub(super) fn refine(nodes: &Slices, last: &Optimum, family: Family) -> Optimum {
+    let mut optimum = *last;
+    let mut before = NEARBY;
+    for _ in 0..STEPS {
+        (optimum.at.value, optimum.at.gradient) = gradient(nodes, &optimum.inverse);
+        let Some(d) = direction(&optimum.at, family, 0.0) else { break };
+        let length = d.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        // not written as `>`: NaN is not nearby
+        if !(length < before) {
+            break;
+        }
+        optimum.inverse = step(&optimum.inverse, d);
+        optimum.evaluations += u32::try_from(nodes.len()).unwrap_or(u32::MAX);
+        if length * (length / before) < ENOUGH {
+            return optimum;
+        }
+        before = 0.5 * length;
+    }
+    minimise(nodes, last.inverse, family)
 }
 
 /// The damped Newton step, no longer than [`LONGEST`]; `None` if the damped Hessian is not positive.
