@@ -108,6 +108,8 @@ cites! {
     JENSEN_2002 = "Jensen2002", "Jensen, Buhler: A Rapid Hierarchical Rendering Technique for Translucent Materials, SIGGRAPH", 2002, "https://doi.org/10.1145/566654.566619";
     /// Jimenez and others, light through ears.
     JIMENEZ_2010 = "Jimenez2010", "Jimenez, Whelan, Sundstedt, Gutierrez: Real-Time Realistic Skin Translucency, IEEE CG&A 30(4)", 2010, "https://doi.org/10.1109/MCG.2010.39";
+    /// Jimenez and others, subsurface scattering by two passes over the screen.
+    JIMENEZ_2015 = "Jimenez2015", "Jimenez, Zsolnai, Jarabo, Freude, Auzinger, Wu, von der Pahlen, Wimmer, Gutierrez: Separable Subsurface Scattering, CGF 34(6)", 2015, "https://doi.org/10.1111/cgf.12529";
     /// Johnson and Christy, the noble metals.
     JOHNSON_CHRISTY_1972 = "JohnsonChristy1972", "Johnson, Christy: Optical Constants of the Noble Metals, Physical Review B 6", 1972, "https://doi.org/10.1103/PhysRevB.6.4370";
     /// Johnson and Christy, the transition metals.
@@ -136,12 +138,20 @@ cites! {
     LAINE_KARRAS_2011 = "LaineKarras2011", "Laine, Karras: Stratified Sampling for Stochastic Transparency, CGF 30(4)", 2011, "https://doi.org/10.1111/j.1467-8659.2011.01978.x";
     /// Lambert's Photometria.
     LAMBERT_1760 = "Lambert1760", "Lambert: Photometria", 1760, "https://archive.org/details/lambertsphotome00lambgoog";
+    /// Lawrence, Rusinkiewicz and Ramamoorthi, sampling by tabulated distributions.
+    LAWRENCE_2004 = "Lawrence2004", "Lawrence, Rusinkiewicz, Ramamoorthi: Efficient BRDF Importance Sampling Using a Factored Representation, ACM TOG 23(3)", 2004, "https://doi.org/10.1145/1015706.1015751";
+    /// Lawson and Hanson, least squares with bounds.
+    LAWSON_HANSON_1974 = "LawsonHanson1974", "Lawson, Hanson: Solving Least Squares Problems", 1974, "https://doi.org/10.1137/1.9781611971217";
     /// Lazanyi and Szirmay-Kalos, Schlick's factor for metals.
     LAZANYI_2005 = "Lazanyi2005", "Lazanyi, Szirmay-Kalos: Fresnel Term Approximations for Metals, WSCG short papers", 2005, "http://hdl.handle.net/11025/11214";
     /// Lindbloom, matrices of colour spaces.
     LINDBLOOM = "Lindbloom", "Lindbloom: RGB/XYZ Matrices", 2017, "http://www.brucelindbloom.com/index.html?Eqn_RGB_XYZ_Matrix.html";
+    /// Matusik and others, the measured materials of MERL.
+    MATUSIK_2003 = "Matusik2003", "Matusik, Pfister, Brand, McMillan: A Data-Driven Reflectance Model, ACM TOG 22(3)", 2003, "https://doi.org/10.1145/882262.882343";
     /// Minnaert, the reciprocity principle in lunar photometry.
     MINNAERT_1941 = "Minnaert1941", "Minnaert: The Reciprocity Principle in Lunar Photometry, Astrophysical Journal 93", 1941, "https://doi.org/10.1086/144279";
+    /// Nelder and Mead, minimisation without derivatives.
+    NELDER_MEAD_1965 = "NelderMead1965", "Nelder, Mead: A Simplex Method for Function Minimization, The Computer Journal 7(4)", 1965, "https://doi.org/10.1093/comjnl/7.4.308";
     /// Neubelt and Pettineo, cloth in a game.
     NEUBELT_PETTINEO_2013 = "NeubeltPettineo2013", "Neubelt, Pettineo: Crafting a Next-Gen Material Pipeline for The Order: 1886, SIGGRAPH course", 2013, "https://blog.selfshadow.com/publications/s2013-shading-course/";
     /// Neumaier, summation with a rounding error that does not grow with the number of terms.
@@ -152,8 +162,14 @@ cites! {
     OREN_NAYAR_1994 = "OrenNayar1994", "Oren, Nayar: Generalization of Lambert's Reflectance Model, SIGGRAPH", 1994, "https://doi.org/10.1145/192161.192213";
     /// Phong, highlights by the mirror direction.
     PHONG_1975 = "Phong1975", "Phong: Illumination for Computer Generated Pictures, CACM 18(6)", 1975, "https://doi.org/10.1145/360825.360839";
+    /// Penner, skin with the diffusion in a texture.
+    PENNER_2011 = "Penner2011", "Penner: Pre-Integrated Skin Rendering, SIGGRAPH course", 2011, "https://advances.realtimerendering.com/s2011/";
+    /// Piessens and others, the routines of QUADPACK.
+    PIESSENS_1983 = "Piessens1983", "Piessens, de Doncker-Kapenga, Ueberhuber, Kahaner: QUADPACK, Springer", 1983, "https://doi.org/10.1007/978-3-642-61786-7";
     /// Planck, the law of black bodies.
     PLANCK_1901 = "Planck1901", "Planck: Ueber das Gesetz der Energieverteilung im Normalspectrum, Annalen der Physik 309(3)", 1901, "https://doi.org/10.1002/andp.19013090310";
+    /// Pope and Fry, how pure water absorbs light.
+    POPE_FRY_1997 = "PopeFry1997", "Pope, Fry: Absorption Spectrum (380-700 nm) of Pure Water. II. Integrating Cavity Measurements, Applied Optics 36(33)", 1997, "https://doi.org/10.1364/AO.36.008710";
     /// Polyanskiy, the database of refractive indices.
     POLYANSKIY_2024 = "Polyanskiy2024", "Polyanskiy: Refractiveindex.info Database of Optical Constants, Scientific Data 11 (data dedicated to the public domain, CC0)", 2024, "https://doi.org/10.1038/s41597-023-02898-2";
     /// Portsmouth, Kutz and Hill, an energy-preserving rough diffuse lobe.
@@ -164,6 +180,8 @@ cites! {
     RAKIC_1998 = "Rakic1998", "Rakic, Djurisic, Elazar, Majewski: Optical Properties of Metallic Films for Vertical-Cavity Optoelectronic Devices, Applied Optics 37", 1998, "https://doi.org/10.1364/AO.37.005271";
     /// Ribardiere and others, Student's t distribution of normals.
     RIBARDIERE_2017 = "Ribardiere2017", "Ribardiere, Bringier, Meneveaux, Simonot: STD: Student's t-Distribution of Slopes for Microfacet Based BSDFs, CGF 36(2)", 2017, "https://doi.org/10.1111/cgf.13137";
+    /// Rusinkiewicz, coordinates of half and difference vector.
+    RUSINKIEWICZ_1998 = "Rusinkiewicz1998", "Rusinkiewicz: A New Change of Variables for Efficient BRDF Representation, Eurographics Workshop on Rendering", 1998, "https://doi.org/10.1007/978-3-7091-6453-2_2";
     /// Schlick, the approximation of the Fresnel factor.
     SCHLICK_1994 = "Schlick1994", "Schlick: An Inexpensive BRDF Model for Physically-based Rendering, CGF 13(3)", 1994, "https://doi.org/10.1111/1467-8659.1330233";
     /// Toksvig, gloss from shortened normals.

@@ -40,7 +40,7 @@ fn known_values_are_reproduced() {
                     let slack = 1e-12 * known.value;
                     let off = (chart.value[0] - known.value).abs();
                     assert!(off <= chart.error[0] + slack, "{what}: {off:e}, estimate {:e}", chart.error[0]);
-                    chart.value[0]
+                    if reduced.error[0] < chart.error[0] { reduced.value[0] } else { chart.value[0] }
                 }
             };
             let error = (got - known.value).abs() / known.value.abs();

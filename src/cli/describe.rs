@@ -108,6 +108,12 @@ pub fn table(t: &TableInfo) -> String {
             text.push_str(&format!("    {} in [{}, {}]: {}\n", c.id, c.range[0], c.range[1], c.meaning));
         }
     }
+    if !t.extra.is_empty() {
+        text.push_str("more channels, to be named in `channels = [..]` with those above:\n");
+        for c in t.extra {
+            text.push_str(&format!("  {} in [{}, {}]: {}\n", c.id, c.range[0], c.range[1], c.meaning));
+        }
+    }
     text.push_str(&match t.model {
         ModelUse::None => "model: none\n".to_owned(),
         ModelUse::Any(default) => format!("model: any, default {default}\n"),

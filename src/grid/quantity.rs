@@ -1,6 +1,7 @@
 //! What an axis can measure. A derived quantity (`roughness`) is read into its base quantity (`alpha`) by a named map.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A quantity that an axis can sweep: id, symbol, unit, and its relation to the base quantity that formulas use.
 #[derive(Debug)]
@@ -53,12 +54,28 @@ pub static QUANTITIES: &[Quantity] = &[
     base("eta", "eta", "1", "relative index of refraction, below over above", [1e-3, 1e3]),
     base("k", "k", "1", "extinction coefficient of a conductor", [0.0, 1e3]),
     base("f0", "F0", "1", "reflectance at normal incidence", [0.0, 1.0]),
-    base("n", "n", "1", "exponent of a cosine lobe", [0.0, 1e7]),
+    base("n", "n", "1", "exponent of a cosine lobe; of a conductor, the real part of the index", [0.0, 1e7]),
     base("nu", "nu", "1", "exponent of a cosine lobe along the tangent", [0.0, 1e7]),
     base("nv", "nv", "1", "exponent of a cosine lobe along the bitangent", [0.0, 1e7]),
     base("sigma", "sigma", "rad", "standard deviation of the slope angle of facets", [0.0, 1.57]),
     base("r", "r", "1", "roughness of a diffuse lobe, as its model takes it", [0.0, 1.0]),
     base("rho", "rho", "1", "diffuse reflectance", [0.0, 1.0]),
+    base("ndotl", "n.l", "1", "cosine of the light to the normal, below the horizon too", [-1.0, 1.0]),
+    base("curvature", "1/r", "1/mm", "curvature of the surface, one over its radius", [0.0, 1e3]),
+    base("radius", "r", "mm", "distance along the surface from the point of entry", [0.0, 1e4]),
+    base("offset", "x", "mm", "distance along one direction from the point of entry", [0.0, 1e4]),
+    base("thickness", "d", "mm", "thickness of what light passes through", [0.0, 1e4]),
+    base("film", "d", "nm", "thickness of a thin film", [0.0, 1e5]),
+    base("path", "d", "length", "length of the path in a medium, in the unit of its coefficients", [0.0, 1e9]),
+    base("temperature", "T", "K", "temperature of what glows", [500.0, 1e6]),
+    base("gaussian", "i", "1", "number of a Gaussian of a sum, the narrowest first", [0.0, 63.0]),
+    base("u", "u", "1", "uniform random number", [0.0, 1.0]),
+    base("v", "v", "1", "second uniform random number", [0.0, 1.0]),
+    base("g", "g", "1", "mean cosine of a phase function", [-1.0, 1.0]),
+    base("deflection", "theta", "rad", "angle between the directions of travel; 0 is forward", [0.0, PI]),
+    base("theta_h", "theta_h", "rad", "angle of the half vector to the normal", [0.0, FRAC_PI_2]),
+    base("theta_d", "theta_d", "rad", "angle of the half vector to both directions", [0.0, FRAC_PI_2]),
+    base("phi_d", "phi_d", "rad", "azimuth of the directions round the half vector", [0.0, PI]),
     derived(
         "roughness",
         "r",
@@ -70,7 +87,7 @@ pub static QUANTITIES: &[Quantity] = &[
         "theta",
         "theta_o",
         "view angle to the normal, in radians",
-        [0.0, std::f64::consts::FRAC_PI_2],
+        [0.0, FRAC_PI_2],
         Base { id: "mu", formula: "mu = cos(theta)", to: |t| libm::cos(t).max(0.0), from: libm::acos },
     ),
     derived(

@@ -16,6 +16,7 @@ pub mod half_vector;
 pub mod hammersley;
 pub mod hemisphere;
 pub mod ladder;
+pub mod line;
 pub mod lobe;
 pub mod nodes;
 pub mod sobol;

@@ -3,6 +3,7 @@
 //! Recipe: `model = "blinn-phong-microfacet"`, `params = { n = 64, f0 = 0.04 }`. n = 10 is satin, 1000 polished.
 
 use super::facets::{Facets, HalfVectorLobe, vcavity_visibility};
+use super::grooves;
 use super::microfacet::{F0, F90, Fresnel};
 use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
 use crate::cite;
@@ -76,5 +77,11 @@ impl Facets for Grooves {
         let alpha = blinn_phong::equivalent_alpha(self.n);
         let reach = if self.n > 100.0 { 9.0 } else { f64::INFINITY };
         Some(Chart::HalfVector { alpha, reach, kinks: true })
+    }
+
+    /// Where `cos^n` has fallen to a small part of the tolerance: `n/2 ln(1 + tan²)` is that many.
+    fn groove_reach(&self, tolerance: f64) -> Option<f64> {
+        let decay = 2.0 * grooves::decay(tolerance) / self.n.max(1e-3);
+        Some(if decay < 100.0 { libm::atan(libm::expm1(decay).sqrt()) } else { std::f64::consts::FRAC_PI_2 })
     }
 }

@@ -19,8 +19,8 @@ pub trait Cloth: Debug + Send + Sync {
         false
     }
 
-    /// The directional albedo in closed form, if there is one.
-    fn albedo(&self, _mu_o: f64) -> Option<f64> {
+    /// E by a rule of its own, where it has one.
+    fn albedo(&self, _mu_o: f64, _tolerance: f64) -> Option<Estimate> {
         None
     }
 }
@@ -48,10 +48,7 @@ impl<C: Cloth> Brdf for ClothLobe<C> {
         Some(Chart::Broad { kinks: self.0.kinks() })
     }
 
-    fn reduced_albedo(&self, mu_o: f64, _tolerance: f64) -> Option<Estimate> {
-        let mut e = Estimate::exact([0.0; crate::integrate::MAX_CHANNELS]);
-        e.value[0] = self.0.albedo(mu_o)?;
-        e.error[0] = 1e-15;
-        Some(e)
+    fn reduced_albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
+        self.0.albedo(mu_o, tolerance)
     }
 }

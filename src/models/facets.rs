@@ -3,9 +3,10 @@
 //! For distributions without a sampler of visible normals, and for visibilities that are not Smith's. The weight of a draw,
 //! `F V 4 v mu_i / cos_h`, is unbounded at grazing for some; the density is exact all the same.
 
+use super::grooves::Grooves;
 use super::microfacet::Fresnel;
 use super::{Brdf, Sample};
-use crate::integrate::Chart;
+use crate::integrate::{Chart, Estimate};
 use crate::math::frame::{self, HalfVector};
 use glam::{DVec2, DVec3};
 use std::fmt::Debug;
@@ -23,6 +24,12 @@ pub trait Facets: Debug + Send + Sync {
 
     /// The coordinates in which it is smooth.
     fn chart(&self) -> Option<Chart>;
+
+    /// Largest angle of a normal from the macronormal that matters to E at a tolerance, for V-shaped grooves: they have a
+    /// rule of their own.
+    fn groove_reach(&self, _tolerance: f64) -> Option<f64> {
+        None
+    }
 }
 
 /// A half-vector lobe.
@@ -63,6 +70,12 @@ impl<L: Facets> Brdf for HalfVectorLobe<L> {
 
     fn chart(&self) -> Option<Chart> {
         self.facets.chart()
+    }
+
+    fn reduced_albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
+        let reach = self.facets.groove_reach(tolerance).filter(|_| mu_o > 0.0)?;
+        let d = |wm| self.facets.d(wm);
+        Some(Grooves { d: &d, reach, fresnel: self.fresnel }.albedo(mu_o, tolerance))
     }
 
     fn mirror(&self, mu_o: f64) -> Option<f64> {

@@ -6,6 +6,7 @@
 use super::cloth::{Cloth, ClothLobe};
 use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
 use crate::cite;
+use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::math::frame;
 use crate::terms::ltc_sheen::Sheen;
 use glam::DVec3;
@@ -60,8 +61,11 @@ impl Cloth for Fibres {
         sheen.reflectance.max(0.0) * sheen.lobe().density(turn(wo, wi)) / wi.z
     }
 
-    fn albedo(&self, mu_o: f64) -> Option<f64> {
-        Some(Sheen::new(mu_o, self.roughness).reflectance.max(0.0))
+    fn albedo(&self, mu_o: f64, _tolerance: f64) -> Option<Estimate> {
+        let mut e = Estimate::exact([0.0; MAX_CHANNELS]);
+        e.value[0] = Sheen::new(mu_o, self.roughness).reflectance.max(0.0);
+        e.error[0] = 1e-15;
+        Some(e)
     }
 }
 

@@ -37,6 +37,7 @@ pub mod ggx_glass;
 pub mod ggx_schlick_masking;
 pub mod glass;
 pub mod gltf;
+mod grooves;
 pub mod gtr;
 pub mod kelemen;
 pub mod kelemen_matte;
@@ -57,6 +58,7 @@ pub mod phong;
 pub mod phong_classic;
 pub mod phong_shading;
 pub mod sggx_fiber;
+pub mod smooth_glass;
 pub mod student_t;
 pub mod torrance_sparrow;
 pub mod turquin;
@@ -77,6 +79,7 @@ use std::fmt::Debug;
 pub static MODELS: &[&ModelInfo] = &[
     &lambert::INFO,
     &mirror::INFO,
+    &smooth_glass::INFO,
     &oren_nayar::INFO,
     &oren_nayar_full::INFO,
     &fujii::INFO,
@@ -304,6 +307,12 @@ pub fn find(name: &str) -> Option<(&'static ModelInfo, Implied)> {
 }
 
 impl ModelInfo {
+    /// The parameter of a name, or of another spelling of it.
+    #[must_use]
+    pub fn param(&self, name: &str) -> Option<&'static Param> {
+        self.params.iter().find(|p| p.is_called(name))
+    }
+
     /// Parameters whose default is the value of another one.
     pub fn followers<'a>(&self, leader: &'a str) -> impl Iterator<Item = &'static str> + use<'a> {
         let follows =

@@ -160,7 +160,7 @@ impl Params {
     ) -> Result<Params, ParamError> {
         let mut set: Vec<Option<Value>> = vec![None; declared.len()];
         for (key, value) in given {
-            let Some(i) = declared.iter().position(|p| p.id == key || p.also.contains(&key)) else {
+            let Some(i) = declared.iter().position(|p| p.is_called(key)) else {
                 return Err(unknown(model, declared, key));
             };
             set[i] = Some(parse(model, &declared[i], value)?);
@@ -340,6 +340,12 @@ impl Param {
         preset: &'static [&'static [f64]],
     ) -> Param {
         Param { id, symbol: "", unit: "1", doc, also: &[], kind: Kind::Rows { columns, preset } }
+    }
+
+    /// Is this its id, or another spelling?
+    #[must_use]
+    pub fn is_called(&self, name: &str) -> bool {
+        self.id == name || self.also.contains(&name)
     }
 
     /// The same parameter with other accepted spellings.

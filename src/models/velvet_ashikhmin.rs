@@ -4,11 +4,15 @@
 
 use super::cloth::{Cloth, ClothLobe};
 use super::facets::vcavity_visibility;
+use super::grooves::Grooves;
+use super::microfacet::Fresnel;
 use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
 use crate::cite;
+use crate::integrate::Estimate;
 use crate::math::frame;
 use crate::terms::velvet;
 use glam::DVec3;
+use std::f64::consts::FRAC_PI_2;
 
 /// Registry entry.
 pub static INFO: ModelInfo = ModelInfo {
@@ -27,7 +31,7 @@ pub static INFO: ModelInfo = ModelInfo {
         Preset::Value(0.5),
     )],
     laws: Laws { reciprocal: true, passive: true, isotropic: true },
-    notes: "0 to all orders where the half vector is the normal. V-cavity masking has kinks, where quadrature converges slowly.",
+    notes: "0 to all orders where the half vector is the normal. V-cavity masking has kinks; E is integrated between them.",
     also: &[Alias { name: "velvet00_vcavity", set: &[] }],
     known: &[Known {
         what: Quantity::Value([1.25, 0.5, 1.0, 1.75]),
@@ -57,5 +61,11 @@ impl Cloth for Velvet {
 
     fn kinks(&self) -> bool {
         true
+    }
+
+    fn albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
+        let d = |wm| velvet::d_2000(self.sigma, wm);
+        let white = Fresnel::Schlick { f0: 1.0, f90: 1.0 };
+        (mu_o > 0.0).then(|| Grooves { d: &d, reach: FRAC_PI_2, fresnel: white }.albedo(mu_o, tolerance))
     }
 }

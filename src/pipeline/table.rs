@@ -131,7 +131,7 @@ fn provenance(plan: &Plan, planned: &PlannedTable, verified: &Verified) -> Prove
         name: planned.name.clone(),
         table: Subject {
             id: spec.kind.id.to_owned(),
-            title: format!("{}, layout {}: {}", spec.kind.title, spec.layout.id, spec.layout.doc),
+            title: format!("{}, {}", spec.kind.title, spec.layout.title()),
             formula: spec.kind.formula.to_owned(),
             params: spec.params.to_json(&spec.swept()),
             sources: source_lines(spec.kind.sources),

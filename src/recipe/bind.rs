@@ -47,6 +47,7 @@ impl<'a> Binder<'a> {
         let mut request = Request {
             kind: entry.kind.clone()?,
             layout: entry.layout.clone(),
+            channels: entry.channels.as_ref().map(|c| c.iter().flatten().cloned().collect()),
             model: entry.model.clone(),
             params: Map::new(),
             axes: None,
@@ -54,7 +55,7 @@ impl<'a> Binder<'a> {
         let declared: Vec<&Param> = kind.map(|k| declared(k, entry)).unwrap_or_default();
         let mut keys: Vec<(String, String)> = Vec::new();
         for (key, value) in &entry.params {
-            let id = declared.iter().find(|p| p.id == key || p.also.contains(&key.as_str()));
+            let id = declared.iter().find(|p| p.is_called(key));
             let id = id.map_or_else(|| key.clone(), |p| p.id.to_owned());
             if let Some((_, other)) = keys.iter().find(|(k, _)| *k == id) {
                 let why = format!("`{other}` and `{key}` are the same");
@@ -104,7 +105,11 @@ impl<'a> Binder<'a> {
         let fault = Fault::Bind(error.clone());
         match error {
             BindError::Unknown { what: "table", .. } => faults.value(at("kind"), fault),
+            BindError::Unknown { what: "channel", got, .. } => faults.value(self.channel_path(got, 0), fault),
             BindError::Unknown { what, .. } => faults.value(at(what), fault),
+            BindError::ChannelTwice { got } => faults.value(self.channel_path(got, 1), fault),
+            BindError::ChannelCount { .. } => faults.value(at("channels"), fault),
+            BindError::LayoutAndChannels { .. } => faults.key(at("channels"), fault),
             BindError::Model { .. } => faults.value(at("model"), fault),
             BindError::Param(e) => match e.key().map(|k| self.param(k)) {
                 Some(path) if matches!(e, ParamError::Unknown { .. }) => faults.key(path, fault),
@@ -122,6 +127,16 @@ impl<'a> Binder<'a> {
     fn param(&self, id: &str) -> String {
         let key = self.keys.iter().find(|(k, _)| k == id).map_or(id, |(_, key)| key);
         join(&join(&self.entry.path, "params"), key)
+    }
+
+    /// Path of the first, second, ... entry of a channel.
+    fn channel_path(&self, id: &str, occurrence: usize) -> String {
+        let listed = self.entry.channels.iter().flatten().enumerate();
+        let path = format!("{}.channels", self.entry.path);
+        match listed.filter(|(_, c)| c.as_deref() == Some(id)).nth(occurrence) {
+            Some((i, _)) => format!("{path}[{i}]"),
+            None => path,
+        }
     }
 
     fn grid_path(&self, error: &GridError) -> String {
@@ -163,6 +178,19 @@ impl<'a> Binder<'a> {
     fn repair(&mut self, error: &BindError) -> bool {
         match error {
             BindError::Unknown { what: "layout", .. } => self.request.layout.take().is_some(),
+            BindError::Unknown { what: "channel", got, .. } => {
+                self.repair_channels(|all| all.retain(|c| c != got))
+            }
+            BindError::ChannelTwice { got } => self.repair_channels(|all| {
+                let first = all.iter().position(|c| c == got);
+                let mut i = 0;
+                all.retain(|c| {
+                    i += 1;
+                    c != got || Some(i - 1) == first
+                });
+            }),
+            BindError::ChannelCount { max, .. } => self.repair_channels(|all| all.truncate(*max)),
+            BindError::LayoutAndChannels { .. } => self.request.channels.take().is_some(),
             BindError::Param(e) => e.key().is_some_and(|key| self.request.params.remove(key).is_some()),
             BindError::Both { key, .. } => self.request.params.remove(key).is_some(),
             BindError::IdleAxis { axis, .. } => self.find(axis).is_some_and(|i| self.remove_axis(i)),
@@ -170,6 +198,14 @@ impl<'a> Binder<'a> {
             BindError::Grid(e) => self.repair_grid(e),
             BindError::Unknown { .. } | BindError::Model { .. } => false,
         }
+    }
+
+    /// Changes the list of channels; the default layout stands in for an empty one.
+    fn repair_channels(&mut self, change: impl FnOnce(&mut Vec<String>)) -> bool {
+        let Some(mut all) = self.request.channels.take() else { return false };
+        change(&mut all);
+        self.request.channels = Some(all).filter(|all| !all.is_empty());
+        true
     }
 
     fn repair_grid(&mut self, error: &GridError) -> bool {
@@ -279,7 +315,7 @@ fn check_swept(entry: &Entry, bound: &Bound, faults: &mut Faults) {
     let model = spec.model.as_ref().map(|(info, _)| (info.id, info.params));
     for (i, axis) in spec.grid.axes().iter().enumerate() {
         for (owner, params) in model.into_iter().chain([(spec.kind.id, spec.kind.params)]) {
-            let Some(param) = params.iter().find(|p| p.id == axis.quantity.base_id()) else { continue };
+            let Some(param) = params.iter().find(|p| p.is_called(axis.quantity.base_id())) else { continue };
             let Kind::Number { min, max, .. } = param.kind else { continue };
             let ends = axis.clamp.unwrap_or(axis.domain).map(|v| axis.quantity.to_base(v));
             let got = [ends[0].min(ends[1]), ends[0].max(ends[1])];

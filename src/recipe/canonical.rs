@@ -25,7 +25,11 @@ pub(super) fn table(table: &PlannedTable) -> Json {
     let mut put = |key: &str, value: Json| drop(map.insert(key.to_owned(), value));
     put("kind", spec.kind.id.into());
     put("name", table.name.as_str().into());
-    put("layout", spec.layout.id.into());
+    if spec.layout.is_custom() {
+        put("channels", spec.layout.ids().collect::<Vec<_>>().into());
+    } else {
+        put("layout", spec.layout.id.into());
+    }
     if let Some((info, _)) = &spec.model {
         put("model", info.id.into());
     }

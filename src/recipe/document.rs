@@ -16,6 +16,7 @@ const TABLE: &[&str] = &[
     "kind",
     "name",
     "layout",
+    "channels",
     "model",
     "params",
     "tolerance",
@@ -42,6 +43,8 @@ pub(super) struct Entry {
     pub(super) name: Option<String>,
     pub(super) kind: Option<String>,
     pub(super) layout: Option<String>,
+    /// A channel that could not be read is none.
+    pub(super) channels: Option<Vec<Option<String>>>,
     pub(super) model: Option<String>,
     pub(super) params: Map<String, Json>,
     pub(super) tolerance: Option<f64>,
@@ -83,6 +86,7 @@ fn entry(table: &DeTable<'_>, path: String, faults: &mut Faults) -> Entry {
         name: section.text("name", faults),
         kind: section.text("kind", faults),
         layout: section.text("layout", faults),
+        channels: channels(&section, faults),
         model: section.text("model", faults),
         params: params(&section, faults),
         tolerance: section.number("tolerance", faults),
@@ -116,6 +120,21 @@ fn params(section: &Section<'_>, faults: &mut Faults) -> Map<String, Json> {
         }
     }
     params
+}
+
+fn channels(section: &Section<'_>, faults: &mut Faults) -> Option<Vec<Option<String>>> {
+    let list = section.list("channels", "a list, such as [\"dfg.scale\", \"dfg.f82\"]", faults)?;
+    let mut channels = Vec::new();
+    // a list far too long is refused by its length alone
+    for (i, item) in list.iter().enumerate().take(64) {
+        let channel = item.get_ref().as_str().map(str::to_owned);
+        if channel.is_none() {
+            let fault = wrong(&format!("channels[{i}]"), item.get_ref(), "a word in quotes");
+            faults.value(format!("{}[{i}]", section.path("channels")), fault);
+        }
+        channels.push(channel);
+    }
+    Some(channels)
 }
 
 fn outputs(section: &Section<'_>, faults: &mut Faults) -> Option<Vec<Option<Output>>> {

@@ -247,6 +247,7 @@ impl Fault {
 fn bind_message(error: &BindError) -> String {
     match error {
         BindError::Unknown { what: "table", got, .. } => format!("unknown table kind `{}`", show(got)),
+        BindError::ChannelTwice { got } => format!("channel `{}` is given twice", show(got)),
         BindError::Unknown { what, got, .. } => format!("unknown {what} `{}`", show(got)),
         BindError::Param(ParamError::Unknown { model, key, .. }) => {
             format!("{model} has no parameter `{}`", show(key))
@@ -267,6 +268,10 @@ fn bind_remedy(error: &BindError) -> Option<&'static str> {
             Some("add a [[table.axis]] for it, or leave all axes out to get the kind's own")
         }
         BindError::IdleAxis { .. } => Some("leave the axis out"),
+        BindError::ChannelTwice { .. } => Some("a file has one channel of a name; leave one out"),
+        BindError::LayoutAndChannels { .. } => {
+            Some("leave one of them out; a layout is a list of channels with a name")
+        }
         BindError::Both { .. } => Some("leave the parameter out, or the axis"),
         BindError::Model { why, .. } if why.starts_with("given") => Some("leave the model out"),
         BindError::Grid(GridError::Size(_)) => Some("make an axis shorter"),

@@ -9,6 +9,7 @@
 //! kind = "dfg"                     # required; an id of `list tables`
 //! name = "ggx-dfg"                 # required; stem of the file names, so unique and portable
 //! layout = "scale-bias"            # default: the first layout of the kind
+//! # channels = ["dfg.f82"]         # instead of a layout: any channels of the kind (`describe`), in file order
 //! model = "ggx"                    # default: the kind's; an id or other name of `list models`
 //! params = { masking = "correlated" }   # numbers and words of model and kind; default: theirs
 //! tolerance = 1e-5                 # absolute, per channel; default: see below

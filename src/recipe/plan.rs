@@ -176,12 +176,13 @@ impl Plan {
 }
 
 fn entry(i: usize, table: TableRequest) -> Entry {
-    let Request { kind, layout, model, params, axes } = table.request;
+    let Request { kind, layout, channels, model, params, axes } = table.request;
     Entry {
         path: format!("table[{i}]"),
         name: Some(table.name),
         kind: Some(kind),
         layout,
+        channels: channels.map(|c| c.into_iter().map(Some).collect()),
         model,
         params,
         tolerance: table.tolerance,

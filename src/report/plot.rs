@@ -3,6 +3,7 @@
 
 use crate::math::frame;
 use crate::models::Brdf;
+use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// How a value becomes a radius; the largest value of all curves reaches the rim.
@@ -35,6 +36,8 @@ struct Stroke {
     points: Vec<[f64; 2]>,
     colour: [u8; 3],
     width: f64,
+    /// A lobe of a sum, drawn with gaps.
+    dashed: bool,
 }
 
 /// A drawn plot.
@@ -53,7 +56,10 @@ impl std::fmt::Debug for Figure {
 /// f in the plane of incidence for angles of incidence in degrees.
 #[must_use]
 pub fn polar(title: &str, params: &str, model: &dyn Brdf, degrees: &[f64], scale: Scale) -> Figure {
-    let curves: Vec<Vec<(f64, f64)>> = degrees.iter().map(|d| curve(model, d.to_radians())).collect();
+    let curves: Vec<Vec<(f64, f64)>> =
+        degrees.iter().map(|d| curve(d.to_radians(), |o, i| model.eval(o, i))).collect();
+    // the lobes of a sum apart, such as its diffuse and its specular part
+    let lobes = model.parts().filter(|parts| parts.len() > 1).unwrap_or_default();
     let top = curves.iter().flatten().map(|p| p.1).fold(0.0, f64::max);
     let mut strokes = grid();
     let mut caption = Vec::new();
@@ -62,13 +68,19 @@ pub fn polar(title: &str, params: &str, model: &dyn Brdf, degrees: &[f64], scale
         let peak = points.iter().map(|p| p.1).fold(0.0, f64::max);
         caption.push((format!("{angle} deg: largest f {peak:.3} 1/sr"), colour));
         let outline = points.iter().map(|&(theta, f)| place(theta, radius(f, top, scale))).collect();
-        strokes.push(Stroke { points: outline, colour, width: 2.0 });
+        strokes.push(Stroke { points: outline, colour, width: 2.0, dashed: false });
+        for &(weight, lobe) in &lobes {
+            let apart = curve(angle.to_radians(), |o, i| weight * lobe.eval(o, i));
+            let points = apart.iter().map(|&(theta, f)| place(theta, radius(f, top, scale))).collect();
+            strokes.push(Stroke { points, colour, width: 1.0, dashed: true });
+        }
         // where the light comes from
         let from = -angle.to_radians();
         strokes.push(Stroke {
             points: vec![place(from, RADIUS), place(from, RADIUS + 14.0)],
             colour,
             width: 3.0,
+            dashed: false,
         });
     }
     let shown = match scale {
@@ -76,19 +88,20 @@ pub fn polar(title: &str, params: &str, model: &dyn Brdf, degrees: &[f64], scale
         Scale::Sqrt => "radius: square root of f".to_owned(),
         Scale::Log => format!("radius: log f, {DECADES} decades"),
     };
-    caption.push((shown, [64, 64, 64]));
+    let apart = if lobes.is_empty() { "" } else { "; dashed: its lobes apart" };
+    caption.push((format!("{shown}{apart}"), [64, 64, 64]));
     let title = if params.is_empty() { title.to_owned() } else { format!("{title} ({params})") };
     Figure { title, caption, strokes }
 }
 
 /// Angle from the normal (negative towards the light) and f.
-fn curve(model: &dyn Brdf, incidence: f64) -> Vec<(f64, f64)> {
+fn curve(incidence: f64, f: impl Fn(DVec3, DVec3) -> f64) -> Vec<(f64, f64)> {
     let wi = frame::spherical(incidence, PI);
     (0..=STEPS)
         .map(|i| {
             let theta = PI * f64::from(i) / f64::from(STEPS) - FRAC_PI_2;
             let wo = frame::spherical(theta.abs(), if theta < 0.0 { PI } else { 0.0 });
-            (theta, model.eval(wo, wi))
+            (theta, f(wo, wi))
         })
         .collect()
 }
@@ -111,7 +124,7 @@ fn place(theta: f64, r: f64) -> [f64; 2] {
 }
 
 fn grid() -> Vec<Stroke> {
-    let line = |points| Stroke { points, colour: GREY, width: 1.0 };
+    let line = |points| Stroke { points, colour: GREY, width: 1.0, dashed: false };
     let arc = |r: f64| (0..=180u32).map(|i| place((f64::from(i) - 90.0).to_radians(), r)).collect();
     let mut strokes: Vec<Stroke> = [0.25, 0.5, 0.75, 1.0].map(|part| line(arc(part * RADIUS))).into();
     for degrees in [-90.0f64, -60.0, -30.0, 0.0, 30.0, 60.0, 90.0] {
@@ -137,11 +150,13 @@ impl Figure {
             escape(&self.title)
         );
         for s in &self.strokes {
-            let points: Vec<String> = s.points.iter().map(|p| format!("{:.2},{:.2}", p[0], p[1])).collect();
+            let points: Vec<String> =
+                thinned(&s.points).iter().map(|p| format!("{:.2},{:.2}", p[0], p[1])).collect();
             svg.push_str(&format!(
-                "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" points=\"{}\"/>\n",
+                "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{} points=\"{}\"/>\n",
                 hex(s.colour),
                 s.width,
+                if s.dashed { " stroke-dasharray=\"5 4\"" } else { "" },
                 points.join(" ")
             ));
         }
@@ -166,7 +181,10 @@ impl Figure {
         let (w, h) = (size(Self::WIDTH), size(MARGIN + RADIUS + 20.0));
         let mut canvas = image::RgbImage::from_pixel(w, h, image::Rgb([255; 3]));
         for stroke in &self.strokes {
-            for pair in stroke.points.windows(2) {
+            for (i, pair) in stroke.points.windows(2).enumerate() {
+                if stroke.dashed && i % 12 >= 7 {
+                    continue;
+                }
                 segment(&mut canvas, pair[0], pair[1], stroke);
             }
         }
@@ -174,6 +192,24 @@ impl Figure {
         canvas.write_to(&mut bytes, image::ImageFormat::Png)?;
         Ok(bytes.into_inner())
     }
+}
+
+/// The line without the points that lie within a twentieth of a pixel of the line through their neighbours.
+fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut kept: Vec<[f64; 2]> = Vec::new();
+    for (i, p) in points.iter().enumerate() {
+        let (Some(a), Some(b)) = (kept.last(), points.get(i + 1)) else {
+            kept.push(*p);
+            continue;
+        };
+        let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+        let [ex, ey] = [p[0] - a[0], p[1] - a[1]];
+        let forward = ex * dx + ey * dy >= 0.0 && dx * dx + dy * dy >= ex * ex + ey * ey;
+        if !forward || (ex * dy - ey * dx).abs() > 0.05 * (dx * dx + dy * dy).sqrt() {
+            kept.push(*p);
+        }
+    }
+    kept
 }
 
 /// Blends a segment in: coverage falls over one pixel at the edge of the line.

@@ -19,6 +19,7 @@ pub static INFO: TableInfo = TableInfo {
         doc: "the directional albedo",
         channels: &[ChannelInfo { id: "e", meaning: "int f(wo, wi) mu_i dwi", range: [0.0, 1.0] }],
     }],
+    extra: &[],
     model: ModelUse::Any("ggx"),
     params: &[],
     laws: &["finite", "range", "energy", "cross-check", "reciprocity"],

@@ -22,6 +22,7 @@ pub static INFO: TableInfo = TableInfo {
         doc: "the average albedo",
         channels: &[ChannelInfo { id: "e-avg", meaning: "2 int_0^1 E(mu) mu dmu", range: [0.0, 1.0] }],
     }],
+    extra: &[],
     model: ModelUse::Any("ggx"),
     params: &[],
     laws: &["finite", "range", "energy", "reciprocity"],

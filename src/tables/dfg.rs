@@ -2,48 +2,92 @@
 //!
 //! A shader multiplies its prefiltered radiance by `F0 * scale + F90 * bias`, or, in the multiscatter layout, by
 //! `mix(fc, total, F0)`, and can add the energy lost to multiple scattering by `1 + F0 (1 / total - 1)`.
+//!
+//! Metals whose reflectance dips near 82 degrees take a third channel: for Schlick's factor with the F82 tint,
+//! `F = F0 + (1 - F0) Fc - b v (1 - v)^6`, the albedo is exactly `F0 * scale + bias - d * f82`, with
+//! `d = (F0 + (1 - F0) (6/7)^5) (1 - tint)`, what F lies below Schlick's curve at v = 1/7.
 
 use super::integral::{Functional, integrate};
 use super::sweep::Sweep;
 use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
-use crate::integrate::Estimate;
+use crate::integrate::{Estimate, MAX_CHANNELS};
+use crate::models::{self, Brdf, ModelInfo, Params};
+use crate::terms::schlick;
+
+const UNIT: [f64; 2] = [0.0, 1.0];
+const SCALE: ChannelInfo =
+    ChannelInfo { id: "dfg.scale", meaning: "int (f/F) (1 - Fc) mu_i dwi", range: UNIT };
+const BIAS: ChannelInfo = ChannelInfo { id: "dfg.bias", meaning: "int (f/F) Fc mu_i dwi", range: UNIT };
+const FC: ChannelInfo = ChannelInfo { id: "dfg.fc", meaning: "int (f/F) Fc mu_i dwi", range: UNIT };
+const TOTAL: ChannelInfo =
+    ChannelInfo { id: "dfg.total", meaning: "int (f/F) mu_i dwi = E(mu, alpha), white", range: UNIT };
+const F82: ChannelInfo = ChannelInfo {
+    id: "dfg.f82",
+    meaning: "int (f/F) v (1 - v)^6 / (1/7 (6/7)^6) mu_i dwi, v = wo.wh",
+    range: UNIT,
+};
+const F82_X16: ChannelInfo = ChannelInfo {
+    id: "dfg.f82-x16",
+    meaning: "16 int (f/F) v (1 - v)^6 mu_i dwi, as Babylon.js stores it for OpenPBR",
+    range: UNIT,
+};
+const CLOTH: ChannelInfo = ChannelInfo {
+    id: "dfg.cloth",
+    meaning: "int D V mu_i dwi, D of Charlie with r = alpha (not below 1e-6), V = 1 / (4 (mu_o + mu_i - mu_o mu_i))",
+    range: [0.0, 400.0],
+};
+const DIFFUSE: ChannelInfo = ChannelInfo {
+    id: "dfg.diffuse",
+    meaning: "int f mu_i dwi of Burley's diffuse lobe, colour 1, r = sqrt(alpha)",
+    range: [0.0, 785.0 / 504.0],
+};
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
     id: "dfg",
     title: "Split-sum DFG",
     formula: "scale = int (f/F) (1 - Fc) mu_i dwi, bias = int (f/F) Fc mu_i dwi, Fc = (1 - wo.wh)^5",
-    sources: &[(cite::KARIS_2013, "section 'Environment BRDF', Eq. 8")],
+    sources: &[
+        (cite::KARIS_2013, "section 'Environment BRDF', Eq. 8"),
+        (cite::KUTZ_2021, "the F82 tint, whose term is the channel f82"),
+        (cite::ESTEVEZ_KULLA_2017, "Eq. 2 (D of the cloth)"),
+        (cite::NEUBELT_PETTINEO_2013, "the visibility of the cloth"),
+        (cite::BURLEY_2012, "section 5.3 (the diffuse lobe)"),
+    ],
     coordinates: &["mu", "alpha"],
     layouts: &[
-        Layout {
-            id: "scale-bias",
-            doc: "specular = F0 * scale + F90 * bias",
-            channels: &[
-                ChannelInfo { id: "dfg.scale", meaning: "int (f/F) (1 - Fc) mu_i dwi", range: [0.0, 1.0] },
-                ChannelInfo { id: "dfg.bias", meaning: "int (f/F) Fc mu_i dwi", range: [0.0, 1.0] },
-            ],
-        },
+        Layout { id: "scale-bias", doc: "specular = F0 * scale + F90 * bias", channels: &[SCALE, BIAS] },
         Layout {
             id: "multiscatter",
             doc: "specular = mix(fc, total, F0), F90 = 1; energy compensation 1 + F0 (1 / total - 1)",
-            channels: &[
-                ChannelInfo { id: "dfg.fc", meaning: "int (f/F) Fc mu_i dwi", range: [0.0, 1.0] },
-                ChannelInfo {
-                    id: "dfg.total",
-                    meaning: "int (f/F) mu_i dwi = E(mu, alpha), white",
-                    range: [0.0, 1.0],
-                },
-            ],
+            channels: &[FC, TOTAL],
+        },
+        Layout {
+            id: "f82",
+            doc: "specular = F0 * scale + bias - (F0 + (1 - F0) (6/7)^5) (1 - tint) * f82, exact where F is not clamped",
+            channels: &[SCALE, BIAS, F82],
+        },
+        Layout {
+            id: "multiscatter-cloth",
+            doc: "as multiscatter; cloth = the albedo of Charlie's sheen with roughness alpha, as Filament reads it",
+            channels: &[FC, TOTAL, CLOTH],
+        },
+        Layout {
+            id: "multiscatter-diffuse",
+            doc: "as multiscatter; diffuse = the factor of the diffuse colour under a uniform sky",
+            channels: &[FC, TOTAL, DIFFUSE],
         },
     ],
+    extra: &[F82_X16],
     model: ModelUse::Split("ggx"),
     params: &[],
     laws: &["finite", "range", "energy", "split", "cross-check", "reciprocity"],
     axes: default_axes,
-    notes: "alpha = 0 is the mirror: scale = 1 - (1 - mu)^5, bias = (1 - mu)^5.",
+    notes: "alpha = 0 is the mirror: scale = 1 - (1 - mu)^5, bias = (1 - mu)^5. cloth grows as 1 / sqrt(2 pi alpha) where mu and \
+        alpha go to 0 (9 in Filament's first texel), and diffuse exceeds 1 on rough surfaces at grazing: half floats hold them, \
+        fixed point spreads its steps over their range.",
     bind,
 };
 
@@ -64,27 +108,96 @@ pub(super) fn view_and_roughness(len: usize) -> Vec<Axis> {
         .collect()
 }
 
+/// What a channel is integrated from.
+#[derive(Clone, Copy)]
+enum Part {
+    /// A functional of the table's model, and its factor.
+    Split(Functional, f64),
+    /// The albedo of the cloth, or of the diffuse lobe.
+    Lobe(Lobe),
+}
+
+/// A lobe that shares the axes of the table, but not its model.
+#[derive(Clone, Copy)]
+struct Lobe {
+    info: &'static ModelInfo,
+    /// Its roughness, and that as a function of alpha.
+    param: &'static str,
+    from_alpha: fn(f64) -> f64,
+}
+
+const CLOTH_LOBE: Lobe =
+    Lobe { info: &models::charlie_neubelt::INFO, param: "roughness", from_alpha: |alpha| alpha };
+const DIFFUSE_LOBE: Lobe = Lobe { info: &models::burley_diffuse::INFO, param: "r", from_alpha: f64::sqrt };
+
 struct Dfg {
     sweep: Sweep,
-    functionals: [Functional; 2],
+    parts: Vec<Part>,
+    /// The functionals of the parts, in order: one pass serves them all.
+    functionals: Vec<Functional>,
+    alpha: usize,
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
-    let sweep = Sweep::new(spec, true)?;
-    let functionals = match spec.layout.id {
-        "multiscatter" => [Functional::Schlick, Functional::One],
-        _ => [Functional::SchlickComplement, Functional::Schlick],
-    };
-    Ok(Box::new(Dfg { sweep, functionals }))
+    let parts: Vec<Part> = spec.layout.ids().map(part).collect();
+    let functional = |p: &Part| if let Part::Split(g, _) = p { Some(*g) } else { None };
+    let functionals = parts.iter().filter_map(functional).collect();
+    let (sweep, alpha) = (Sweep::new(spec, true)?, spec.coordinate("alpha")?);
+    Ok(Box::new(Dfg { sweep, parts, functionals, alpha }))
+}
+
+fn part(channel: &str) -> Part {
+    match channel {
+        "dfg.scale" => Part::Split(Functional::SchlickComplement, 1.0),
+        "dfg.bias" | "dfg.fc" => Part::Split(Functional::Schlick, 1.0),
+        "dfg.f82" => Part::Split(Functional::F82, 1.0),
+        "dfg.f82-x16" => Part::Split(Functional::F82, 16.0 / schlick::F82_SCALE),
+        "dfg.cloth" => Part::Lobe(CLOTH_LOBE),
+        "dfg.diffuse" => Part::Lobe(DIFFUSE_LOBE),
+        _ => Part::Split(Functional::One, 1.0),
+    }
+}
+
+impl Lobe {
+    fn build(&self, alpha: f64) -> Result<Box<dyn Brdf>, TexelError> {
+        let mut params = Params::resolve(self.info.id, self.info.params, [])?;
+        // not bounded by the range of the parameter, which is that of sensible materials
+        params.set(self.param, (self.from_alpha)(alpha));
+        Ok((self.info.build)(&params)?)
+    }
 }
 
 impl Baker for Dfg {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
-        let model = self.sweep.model(at)?;
-        integrate(&*model, self.sweep.view(at), &self.functionals, tolerance)
+        let view = self.sweep.view(at);
+        let mut all = Estimate { value: [0.0; MAX_CHANNELS], error: [0.0; MAX_CHANNELS], evaluations: 0 };
+        let mut split = all;
+        if !self.functionals.is_empty() {
+            split = integrate(&*self.sweep.model(at)?, view, &self.functionals, tolerance)?;
+            all.evaluations = split.evaluations;
+        }
+        let mut next = 0;
+        for (c, part) in self.parts.iter().enumerate() {
+            (all.value[c], all.error[c]) = match part {
+                Part::Split(_, factor) => {
+                    next += 1;
+                    (factor * split.value[next - 1], factor * split.error[next - 1])
+                }
+                Part::Lobe(lobe) => {
+                    let model = lobe.build(at[self.alpha])?;
+                    // an isotropic lobe: the azimuth of the view does not matter
+                    let e = integrate(&*model, view.in_plane(), &[Functional::One], tolerance)?;
+                    all.evaluations = all.evaluations.saturating_add(e.evaluations);
+                    (e.value[0], e.error[0])
+                }
+            };
+        }
+        Ok(all)
     }
 
     fn rule(&self) -> String {
-        self.sweep.rule()
+        let lobes = self.parts.iter().any(|p| matches!(p, Part::Lobe(_)));
+        let more = if lobes { "; cloth and diffuse each by its own rule" } else { "" };
+        format!("{}{more}", self.sweep.rule())
     }
 }

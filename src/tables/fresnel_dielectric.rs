@@ -4,7 +4,7 @@ use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, Te
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
-use crate::terms::fresnel;
+use crate::terms::fresnel::{self, Polarised};
 
 const UNIT: [f64; 2] = [0.0, 1.0];
 
@@ -53,6 +53,7 @@ pub static INFO: TableInfo = TableInfo {
             ],
         },
     ],
+    extra: &[],
     model: ModelUse::None,
     params: &[],
     laws: &["finite", "range", "fresnel-reversible"],
@@ -75,11 +76,24 @@ fn default_axes() -> Vec<Axis> {
 struct Table {
     mu: usize,
     eta: usize,
-    layout: &'static str,
+    /// The value of each channel from the factors of above and below.
+    channels: Vec<fn(Polarised, Polarised) -> f64>,
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
-    Ok(Box::new(Table { mu: spec.coordinate("mu")?, eta: spec.coordinate("eta")?, layout: spec.layout.id }))
+    let channels = spec.layout.ids().map(part).collect();
+    Ok(Box::new(Table { mu: spec.coordinate("mu")?, eta: spec.coordinate("eta")?, channels }))
+}
+
+fn part(channel: &str) -> fn(Polarised, Polarised) -> f64 {
+    match channel {
+        "fresnel.s" | "fresnel.outside.s" => |above, _| above.s,
+        "fresnel.p" | "fresnel.outside.p" => |above, _| above.p,
+        "fresnel.inside.s" => |_, below| below.s,
+        "fresnel.inside.p" => |_, below| below.p,
+        "fresnel.inside" => |_, below| below.unpolarised(),
+        _ => |above, _| above.unpolarised(),
+    }
 }
 
 impl Baker for Table {
@@ -88,11 +102,8 @@ impl Baker for Table {
         let above = fresnel::dielectric(mu, eta);
         let below = fresnel::dielectric(mu, 1.0 / eta);
         let mut value = [0.0; MAX_CHANNELS];
-        match self.layout {
-            "polarised" => value[..3].copy_from_slice(&[above.s, above.p, above.unpolarised()]),
-            "both-sides" => value[..2].copy_from_slice(&[above.unpolarised(), below.unpolarised()]),
-            "both-sides-polarised" => value[..4].copy_from_slice(&[above.s, above.p, below.s, below.p]),
-            _ => value[0] = above.unpolarised(),
+        for (v, part) in value.iter_mut().zip(&self.channels) {
+            *v = part(above, below);
         }
         Ok(Estimate::exact(value))
     }

@@ -2,12 +2,13 @@
 //!
 //! `I_j = int f(wo, wi) g_j(wo . wh) mu_i dwi`, all channels over the same nodes in one pass.
 
-use super::TexelError;
+use super::{TexelError, finite};
 use crate::integrate::{BATCH, Estimate, MAX_CHANNELS, Nodes, Sums, View, adaptive, ladder};
 use crate::models::Brdf;
+use crate::terms::{fresnel, schlick};
 
 /// The weight g_j of a channel, a function of `v = wo . wh`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Functional {
     /// g = 1: the directional albedo.
     One,
@@ -15,6 +16,12 @@ pub enum Functional {
     Schlick,
     /// g = 1 - (1 - v)^5: the part that follows F0.
     SchlickComplement,
+    /// g = v (1 - v)^6 / (1/7 (6/7)^6), which is 1 at v = 1/7: the part that follows the deviation from Schlick at 82 degrees.
+    F82,
+    /// g = (1 - v)^e.
+    Power(f64),
+    /// g = (F(v) - F0) / (1 - F0) of a dielectric of relative index eta; Schlick's cosine replaced by the exact curve.
+    Dielectric(f64),
 }
 
 impl Functional {
@@ -27,17 +34,33 @@ impl Functional {
             Functional::One => 1.0,
             Functional::Schlick => fc,
             Functional::SchlickComplement => 1.0 - fc,
+            Functional::F82 => v * fc * m * schlick::F82_SCALE,
+            Functional::Power(e) => libm::pow(m.max(0.0), e),
+            Functional::Dielectric(eta) => relative_fresnel(v, eta),
         }
     }
 
-    /// The channel from the two sums that every functional is made of.
-    fn of(self, sums: Batch) -> f64 {
+    /// The channel from the two sums that the usual functionals are made of.
+    fn of(self, sums: Batch) -> Option<f64> {
         match self {
-            Functional::One => sums.one,
-            Functional::Schlick => sums.schlick,
-            Functional::SchlickComplement => sums.one - sums.schlick,
+            Functional::One => Some(sums.one),
+            Functional::Schlick => Some(sums.schlick),
+            Functional::SchlickComplement => Some(sums.one - sums.schlick),
+            _ => None,
         }
     }
+
+    /// The channel of a batch by its weight at every node.
+    fn sum(self, values: &[f64; BATCH], nodes: &Nodes) -> f64 {
+        let term = |i: usize| values[i] * (nodes.weight[i] * nodes.mu_i[i]) * self.at(nodes.cos_d[i]);
+        (0..nodes.len).map(term).sum()
+    }
+}
+
+/// `(F - F0) / (1 - F0)`; 0 at eta = 1, where nothing is reflected.
+fn relative_fresnel(v: f64, eta: f64) -> f64 {
+    let f0 = fresnel::dielectric(1.0, eta).unpolarised();
+    ((fresnel::dielectric(v, eta).unpolarised() - f0) / (1.0 - f0)).max(0.0)
 }
 
 /// Sums of a batch: of the contributions, and of the contributions times (1 - v)^5.
@@ -113,7 +136,7 @@ pub fn integrate(
         model.eval_nodes(nodes, &mut values);
         let batch = Batch::new(&values, nodes);
         for (s, g) in sums.iter_mut().zip(functionals) {
-            *s += g.of(batch);
+            *s += g.of(batch).unwrap_or_else(|| g.sum(&values, nodes));
         }
     };
     let channels = functionals.len();
@@ -147,13 +170,4 @@ fn sum(
         total.evaluations = total.evaluations.saturating_add(e.evaluations);
     }
     finite(total, functionals.len())
-}
-
-fn finite(estimate: Estimate, channels: usize) -> Result<Estimate, TexelError> {
-    for (channel, (&value, &error)) in estimate.value.iter().zip(&estimate.error).take(channels).enumerate() {
-        if !(value.is_finite() && error.is_finite()) {
-            return Err(TexelError::NotFinite { channel, value });
-        }
-    }
-    Ok(estimate)
 }

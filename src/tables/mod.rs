@@ -5,12 +5,20 @@
 pub mod albedo;
 pub mod average_albedo;
 pub mod dfg;
+pub mod diffusion_kernel;
+pub mod diffusion_profile;
+pub mod diffusion_sampling;
 pub mod driver;
 pub mod fresnel_dielectric;
+pub mod gaussian_fit;
 pub mod integral;
 pub mod kelemen_beckmann;
 pub mod ltc_fit;
 pub mod ndf;
+pub mod preintegrated_skin;
+pub mod profile;
+pub mod selection;
+pub mod skin_transmittance;
 pub mod spec;
 pub mod sweep;
 
@@ -18,6 +26,7 @@ use crate::cite::Cite;
 use crate::grid::{Axis, Channel, table::named};
 use crate::integrate::Estimate;
 use crate::models::Param;
+pub use selection::Selection;
 pub use spec::{BindError, Bound, Spec};
 
 /// Every table kind, in the order of `list tables`.
@@ -28,6 +37,12 @@ pub static TABLES: &[&TableInfo] = &[
     &fresnel_dielectric::INFO,
     &ndf::INFO,
     &kelemen_beckmann::INFO,
+    &preintegrated_skin::INFO,
+    &diffusion_profile::INFO,
+    &diffusion_kernel::INFO,
+    &diffusion_sampling::INFO,
+    &gaussian_fit::INFO,
+    &skin_transmittance::INFO,
 ];
 
 /// A table kind bound to a model, parameters and axes: computes one texel. Pure: no threads, no clamps, no output.
@@ -62,6 +77,21 @@ pub enum TexelError {
     Param(#[from] crate::models::ParamError),
 }
 
+/// Values in closed form, if the first `channels` of them are finite.
+fn closed_form(value: crate::integrate::Sums, channels: usize) -> Result<Estimate, TexelError> {
+    finite(Estimate::exact(value), channels)
+}
+
+/// An estimate of which the first `channels` values and errors are finite.
+fn finite(e: Estimate, channels: usize) -> Result<Estimate, TexelError> {
+    for (channel, (&value, &error)) in e.value.iter().zip(&e.error).take(channels).enumerate() {
+        if !(value.is_finite() && error.is_finite()) {
+            return Err(TexelError::NotFinite { channel, value });
+        }
+    }
+    Ok(e)
+}
+
 /// A named set of channels of a table kind.
 #[derive(Debug, Clone, Copy)]
 pub struct Layout {
@@ -74,7 +104,7 @@ pub struct Layout {
 }
 
 /// A channel of a layout.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChannelInfo {
     /// Name in files.
     pub id: &'static str,
@@ -118,6 +148,8 @@ pub struct TableInfo {
     pub coordinates: &'static [&'static str],
     /// Channel layouts; the first is the default.
     pub layouts: &'static [Layout],
+    /// Channels that are in no layout; a recipe picks them by `channels`.
+    pub extra: &'static [ChannelInfo],
     /// What it wants of a model.
     pub model: ModelUse,
     /// Parameters of its own.
@@ -130,6 +162,20 @@ pub struct TableInfo {
     pub notes: &'static str,
     /// Binds a resolved spec.
     pub bind: fn(&Spec) -> Result<Box<dyn Baker>, BindError>,
+}
+
+impl TableInfo {
+    /// Every channel that a table of this kind can hold: those of the layouts in order, then the extra ones.
+    #[must_use]
+    pub fn pool(&self) -> Vec<ChannelInfo> {
+        let mut pool: Vec<ChannelInfo> = Vec::new();
+        for channel in self.layouts.iter().flat_map(|l| l.channels).chain(self.extra) {
+            if pool.iter().all(|c| c.id != channel.id) {
+                pool.push(*channel);
+            }
+        }
+        pool
+    }
 }
 
 /// Finds a table kind by id.

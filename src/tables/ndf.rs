@@ -29,6 +29,7 @@ pub static INFO: TableInfo = TableInfo {
             channels: &[ChannelInfo { id: "ndf.d", meaning: "D(mu_m), 1/sr", range: [0.0, 3.4e38] }],
         },
     ],
+    extra: &[],
     model: ModelUse::None,
     params: &[Param::choice("distribution", "which distribution", &["ggx", "beckmann"])],
     laws: &["finite", "range", "normalised"],
@@ -52,7 +53,8 @@ struct Ndf {
     mu: usize,
     alpha: usize,
     beckmann: bool,
-    relative: bool,
+    /// For each channel: relative to the peak?
+    relative: Vec<bool>,
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
@@ -60,7 +62,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         mu: spec.coordinate("mu_m")?,
         alpha: spec.coordinate("alpha")?,
         beckmann: spec.params.choice("distribution") == "beckmann",
-        relative: spec.layout.id == "relative",
+        relative: spec.layout.ids().map(|id| id == "ndf.relative").collect(),
     }))
 }
 
@@ -77,9 +79,12 @@ impl Baker for Ndf {
     fn texel(&self, at: &[f64], _tolerance: f64) -> Result<Estimate, TexelError> {
         let (mu, alpha) = (at[self.mu], at[self.alpha]);
         let mut value = [0.0; MAX_CHANNELS];
-        value[0] = d(self.beckmann, mu, alpha) * if self.relative { PI * alpha * alpha } else { 1.0 };
-        if !value[0].is_finite() {
-            return Err(TexelError::NotFinite { channel: 0, value: value[0] });
+        let d = d(self.beckmann, mu, alpha);
+        for (channel, (v, relative)) in value.iter_mut().zip(&self.relative).enumerate() {
+            *v = if *relative { d * (PI * alpha * alpha) } else { d };
+            if !v.is_finite() {
+                return Err(TexelError::NotFinite { channel, value: *v });
+            }
         }
         Ok(Estimate::exact(value))
     }

@@ -1,8 +1,8 @@
 //! A table with everything resolved: kind, layout, model, parameters, axes.
 
-use super::{Baker, Layout, ModelUse, TableInfo};
+use super::{Baker, ModelUse, Selection, TableInfo};
 use crate::grid::{Axis, Channel, Grid, GridError};
-use crate::models::{self, ModelInfo, ParamError, Params};
+use crate::models::{self, ModelInfo, Param, ParamError, Params};
 use serde_json::{Map, Value as Json};
 
 /// A resolved table: what [`TableInfo::bind`] takes and what metadata is written from.
@@ -10,8 +10,8 @@ use serde_json::{Map, Value as Json};
 pub struct Spec {
     /// The kind.
     pub kind: &'static TableInfo,
-    /// The channel layout.
-    pub layout: &'static Layout,
+    /// The channels, by layout or one by one.
+    pub layout: Selection,
     /// The model and its parameters, for kinds that have one.
     pub model: Option<(&'static ModelInfo, Params)>,
     /// The kind's own parameters.
@@ -39,8 +39,10 @@ impl std::fmt::Debug for Bound {
 pub struct Request {
     /// Table kind id.
     pub kind: String,
-    /// Layout id; the default layout if none.
+    /// Layout id; the default layout if none, unless there are `channels`.
     pub layout: Option<String>,
+    /// Any channels of the kind's pool, in file order, instead of a layout.
+    pub channels: Option<Vec<String>>,
     /// Model id; the kind's default if none.
     pub model: Option<String>,
     /// Parameters of model and kind.
@@ -53,10 +55,10 @@ pub struct Request {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BindError {
-    /// No such table kind, layout or model.
+    /// No such table kind, layout, channel or model.
     #[error("no {what} `{got}`; there is {allowed}{}", .suggestion.as_deref().map(|s| format!("; did you mean `{s}`?")).unwrap_or_default())]
     Unknown {
-        /// `table`, `layout` or `model`.
+        /// `table`, `layout`, `channel` or `model`.
         what: &'static str,
         /// What was asked for.
         got: String,
@@ -64,6 +66,28 @@ pub enum BindError {
         allowed: String,
         /// The nearest.
         suggestion: Option<String>,
+    },
+    /// A channel that is named twice.
+    #[error("channel `{got}` is given twice")]
+    ChannelTwice {
+        /// The channel.
+        got: String,
+    },
+    /// No channels, or too many.
+    #[error("table {kind}: {got} channels; a table has 1 to {max}")]
+    ChannelCount {
+        /// Table kind.
+        kind: &'static str,
+        /// How many there are.
+        got: usize,
+        /// How many there may be.
+        max: usize,
+    },
+    /// Two answers to one question.
+    #[error("table {kind}: `layout` and `channels` are both given")]
+    LayoutAndChannels {
+        /// Table kind.
+        kind: &'static str,
     },
     /// A model given to a kind that has none, or of the wrong sort.
     #[error("table {kind}: model `{model}` {why}")]
@@ -125,14 +149,7 @@ impl Request {
     fn resolve(&self) -> Result<Spec, BindError> {
         let kind = super::find(&self.kind)
             .ok_or_else(|| unknown("table", &self.kind, super::TABLES.iter().map(|t| t.id)))?;
-        let layout = match &self.layout {
-            None => &kind.layouts[0],
-            Some(id) => kind
-                .layouts
-                .iter()
-                .find(|l| l.id == id)
-                .ok_or_else(|| unknown("layout", id, kind.layouts.iter().map(|l| l.id)))?,
-        };
+        let layout = Selection::resolve(kind, self.layout.as_deref(), self.channels.as_deref())?;
         let grid = Grid::new(self.axes.clone().unwrap_or_else(kind.axes))?;
         let (model, model_params, table_params) = self.split_params(kind)?;
         let params = Params::resolve(kind.id, kind.params, borrowed(&table_params))?;
@@ -187,6 +204,10 @@ impl Spec {
     pub fn swept(&self) -> Vec<&'static str> {
         let mut ids: Vec<&'static str> = self.grid.axes().iter().map(|a| a.quantity.base_id()).collect();
         if let Some((info, params)) = &self.model {
+            // an axis may go by another spelling of the parameter
+            for id in &mut ids {
+                *id = info.param(id).map_or(*id, |p| p.id);
+            }
             for leader in ids.clone() {
                 let follows = |id: &&str| (params.number(id) - params.number(leader)).abs() == 0.0;
                 ids.extend(info.followers(leader).filter(follows));
@@ -255,29 +276,30 @@ fn check_axes(
             return Err(BindError::MissingAxis { kind: kind.id, needed, got });
         }
     }
-    let numbers: Vec<&'static str> = model
+    let numbers: Vec<&Param> = model
         .iter()
         .flat_map(|(info, _)| info.params)
         .chain(kind.params)
         .filter(|p| matches!(p.kind, models::Kind::Number { .. }))
-        .map(|p| p.id)
         .collect();
     // a view has an azimuth where it has a cosine
     let azimuth: &[&str] = if model.is_some() && kind.coordinates.contains(&"mu") { &["phi"] } else { &[] };
     for (axis, base) in grid.axes().iter().zip(&bases) {
-        if !kind.coordinates.contains(base) && !numbers.contains(base) && !azimuth.contains(base) {
+        let number = numbers.iter().find(|p| p.is_called(base));
+        if !kind.coordinates.contains(base) && number.is_none() && !azimuth.contains(base) {
             let allowed = kind
                 .coordinates
                 .iter()
-                .chain(&numbers)
-                .chain(azimuth)
                 .copied()
+                .chain(numbers.iter().map(|p| p.id))
+                .chain(azimuth.iter().copied())
                 .collect::<Vec<_>>()
                 .join(", ");
             return Err(BindError::IdleAxis { kind: kind.id, axis: axis.quantity.id, allowed });
         }
-        if given.contains_key(*base) {
-            return Err(BindError::Both { kind: kind.id, key: (*base).to_owned() });
+        let same = |key: &&String| key.as_str() == *base || number.is_some_and(|p| p.is_called(key));
+        if let Some(key) = given.keys().find(same) {
+            return Err(BindError::Both { kind: kind.id, key: key.clone() });
         }
     }
     Ok(())

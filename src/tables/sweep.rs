@@ -35,7 +35,8 @@ impl Sweep {
             match axis.quantity.base_id() {
                 "mu" => sweep.mu = Some(i),
                 "phi" => sweep.phi = Some(i),
-                id => sweep.swept.push((i, id)),
+                // an axis that the model has no parameter for is one of the table kind
+                id => sweep.swept.extend(info.param(id).map(|p| (i, p.id))),
             }
         }
         Ok(sweep)

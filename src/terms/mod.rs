@@ -24,6 +24,7 @@ pub mod refraction;
 pub mod schlick;
 pub mod schlick_masking;
 pub mod sggx;
+pub mod single;
 pub mod skin;
 pub mod skin_specular;
 pub mod smith;

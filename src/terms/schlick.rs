@@ -8,6 +8,9 @@
 /// Cosine at which the F82 tint is read.
 const MU_82: f64 = 1.0 / 7.0;
 
+/// `1 / (c (1 − c)⁶)` at that cosine, its largest value: 823543/46656.
+pub const F82_SCALE: f64 = 823_543.0 / 46_656.0;
+
 /// `(1 − c)⁵` by multiplication; 0 for a cosine that rounding has put above 1.
 ///
 /// The weight of `f90` in [`schlick`], and the integrand of the bias of split-sum tables.
@@ -46,8 +49,7 @@ pub fn schlick_generalised(f0: f64, f90: f64, exponent: f64, cos_i: f64) -> f64 
 /// A baker computes it once per material, not once per direction.
 #[must_use]
 pub fn f82_dip(f0: f64, tint: f64) -> f64 {
-    // (1/7)(6/7)⁶ = 46656/823543.
-    schlick(f0, 1.0, MU_82) * (1.0 - tint) * (823_543.0 / 46_656.0)
+    schlick(f0, 1.0, MU_82) * (1.0 - tint) * F82_SCALE
 }
 
 /// The F82-tint factor, not clamped: `F = F_schlick(c) − b c (1 − c)⁶` with b of [`f82_dip`].

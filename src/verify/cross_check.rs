@@ -61,6 +61,7 @@ fn functional(channel: &str) -> Option<Functional> {
     match channel {
         "dfg.scale" => Some(Functional::SchlickComplement),
         "dfg.bias" | "dfg.fc" => Some(Functional::Schlick),
+        "dfg.f82" => Some(Functional::F82),
         "dfg.total" | "e" => Some(Functional::One),
         _ => None,
     }

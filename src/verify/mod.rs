@@ -8,6 +8,7 @@ pub mod cross_check;
 pub mod energy;
 pub mod finding;
 pub mod finite;
+pub mod monotone;
 pub mod normalised;
 pub mod range;
 pub mod reciprocity;
@@ -17,6 +18,7 @@ pub mod seeds;
 pub mod split;
 pub mod survey;
 pub mod tolerance;
+pub mod total;
 
 use crate::grid::Table;
 use crate::grid::provenance::{LawRecord, Waiver};
@@ -27,9 +29,11 @@ pub use finding::Finding;
 pub static LAWS: &[&Law] = &[
     &finite::LAW,
     &range::LAW,
+    &monotone::LAW,
     &energy::LAW,
     &split::LAW,
     &normalised::LAW,
+    &total::LAW,
     &reversible::LAW,
     &cross_check::LAW,
     &reciprocity::LAW,

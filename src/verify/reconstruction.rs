@@ -129,7 +129,7 @@ impl<'a> Probe<'a> {
         searched: &[Compared<'_>],
         inside: impl Fn(&Point) -> bool,
     ) -> Option<Spread> {
-        let channels = self.bound.spec.layout.channels;
+        let channels = &self.bound.spec.layout.channels;
         let (mut sum, mut n) = (0.0, 0.0);
         for c in regular.iter().filter(|c| inside(&c.fresh.point)) {
             sum += c.sum;

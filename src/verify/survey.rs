@@ -145,8 +145,10 @@ fn judge(info: &ModelInfo, s: &mut Survey) {
     };
 }
 
-/// The defaults, then each number in turn at its ends and between; ranges over decades are walked in logarithms.
-fn parameter_sets(info: &'static ModelInfo) -> Vec<(String, Params)> {
+/// The parameters at which a model is surveyed, with their words: the defaults, then each number in turn at its ends and
+/// between; ranges over decades are walked in logarithms.
+#[must_use]
+pub fn parameter_sets(info: &'static ModelInfo) -> Vec<(String, Params)> {
     let Ok(defaults) = Params::resolve(info.id, info.params, []) else { return Vec::new() };
     let mut sets = vec![("defaults".to_owned(), defaults.clone())];
     for param in info.params {

@@ -1,0 +1,157 @@
+//! The albedo of V-shaped grooves, whose masking has kinks that no product rule sees.
+//!
+//! With `wo` fixed, a facet normal at the angle delta from `wo` and the azimuth psi from the macronormal gives
+//!
+//! ```text
+//! E(mu) = int F(c) D(wm) min(1 / mu, 2 z / c, 2 z mu_i / (c mu)) c dwm,  c = cos delta, z = wm.z, mu_i = 2 c z - mu
+//! ```
+//! On a line of constant delta every kink, and the horizon of `wi`, is a value of z: `c / 2 mu` and `(mu + sqrt(mu² + 4c²)) / 4c`
+//! where masking and shadowing begin, `mu / c` where they change places, `mu / 2c` the horizon. The azimuth is split there. The
+//! deltas at which such a height comes within reach are those of the plane of incidence and closed: `theta`, `|2 theta - pi/2|`,
+//! `|2 theta - pi/2| / 3`, `(2 theta + pi/2) / 3`, `(pi/2 ± theta) / 2`, and `acos(sqrt(2) mu)` where the heights meet; there the inner integral has a square root, which the
+//! sine of a panel's coordinate removes. So plain Gauss-Legendre converges geometrically everywhere.
+
+use super::microfacet::Fresnel;
+use crate::integrate::ladder::ROUNDING;
+use crate::integrate::{Estimate, MAX_CHANNELS, gauss};
+use glam::DVec3;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Numbers of nodes of a panel, in both coordinates.
+const ORDERS: [usize; 7] = [6, 9, 13, 18, 24, 32, 48];
+
+/// Grooves with their facets.
+pub(super) struct Grooves<'a> {
+    /// Distribution of normals, 1/sr.
+    pub d: &'a dyn Fn(DVec3) -> f64,
+    /// Largest angle of a facet normal from the macronormal that matters at a tolerance.
+    pub reach: f64,
+    /// Fresnel factor.
+    pub fresnel: Fresnel,
+}
+
+/// The view and one line of constant delta.
+#[derive(Clone, Copy)]
+struct Line {
+    mu: f64,
+    s: f64,
+    /// Cosine and sine of delta.
+    c: f64,
+    sin: f64,
+    /// `sin(theta - delta)`.
+    tilt: f64,
+}
+
+impl Grooves<'_> {
+    /// E at a view cosine, to an absolute tolerance.
+    pub(super) fn albedo(&self, mu: f64, tolerance: f64) -> Estimate {
+        let mut estimate = Estimate::exact([0.0; MAX_CHANNELS]);
+        estimate.evaluations = 0;
+        let mut coarse = f64::NAN;
+        for order in ORDERS {
+            let fine = self.sum(mu, order, &mut estimate.evaluations);
+            (estimate.value[0], estimate.error[0]) = (fine, (fine - coarse).abs() + fine.abs() * ROUNDING);
+            if estimate.error[0] <= tolerance {
+                break;
+            }
+            coarse = fine;
+        }
+        estimate
+    }
+
+    fn sum(&self, mu: f64, order: usize, count: &mut u32) -> f64 {
+        let s = ((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt();
+        let theta = libm::atan2(s, mu);
+        let rule = gauss::rule(order);
+        let mut total = 0.0;
+        for pair in breaks(theta, self.reach).windows(2) {
+            let half = 0.5 * (pair[1] - pair[0]);
+            for (x, w) in rule.nodes.iter().zip(&rule.weights) {
+                // t = sin^2(pi x / 2): square roots at both ends become smooth
+                let (sin_x, cos_x) = libm::sincos(FRAC_PI_2 * x);
+                let u = pair[0] + 2.0 * half * (sin_x * sin_x);
+                let weight = 2.0 * half * PI * sin_x * cos_x * w;
+                let (sin_u, cos_u) = libm::sincos(u);
+                let (c, sin) = (mu * cos_u - s * sin_u, s * cos_u + mu * sin_u);
+                let line = Line { mu, s, c, sin, tilt: -sin_u };
+                if c > 0.0 && sin > 0.0 {
+                    let inner = self.azimuths(&line, rule, count);
+                    total += weight * sin * c * self.fresnel.at(c) * inner;
+                }
+            }
+        }
+        total
+    }
+
+    /// `int D min(...) dpsi` over both signs of psi.
+    fn azimuths(&self, line: &Line, rule: &gauss::Rule, count: &mut u32) -> f64 {
+        let Line { mu, c, .. } = *line;
+        let least = libm::cos(self.reach).max(0.0).max(0.5 * mu / c);
+        let mut ends = [0.5 * c / mu, (mu + (mu * mu + 4.0 * c * c).sqrt()) / (4.0 * c), mu / c, least]
+            .map(|z| line.azimuth(z.max(least)));
+        ends.sort_by(f64::total_cmp);
+        let (mut from, mut sum) = (0.0, 0.0);
+        for to in ends {
+            for (x, w) in rule.nodes.iter().zip(&rule.weights) {
+                if to - from <= 0.0 {
+                    break;
+                }
+                let wm = line.normal(from + (to - from) * x);
+                let mu_i = 2.0 * c * wm.z - mu;
+                let open = mu.recip().min(2.0 * wm.z / c).min(2.0 * wm.z * mu_i / (c * mu));
+                *count = count.saturating_add(1);
+                sum += w * (to - from) * (self.d)(wm) * open.max(0.0);
+            }
+            from = from.max(to);
+        }
+        2.0 * sum
+    }
+}
+
+impl Line {
+    /// The azimuth at which a facet has the height z; 0 or pi if none has.
+    fn azimuth(&self, z: f64) -> f64 {
+        let (scale, cosine) = (self.sin * self.s, z - self.c * self.mu);
+        if cosine >= scale {
+            0.0
+        } else if cosine <= -scale {
+            PI
+        } else {
+            libm::atan2(((scale - cosine) * (scale + cosine)).sqrt(), cosine)
+        }
+    }
+
+    /// The normal at an azimuth; its slopes are not differences.
+    fn normal(&self, psi: f64) -> DVec3 {
+        let half = libm::sin(0.5 * psi);
+        let x = self.tilt + 2.0 * self.sin * self.mu * half * half;
+        let z = self.c * self.mu + self.sin * self.s * (1.0 - 2.0 * half * half);
+        DVec3::new(x, self.sin * libm::sin(psi), z)
+    }
+}
+
+/// Natural logarithm of what may be left out: a ten-thousandth of the tolerance.
+pub(super) fn decay(tolerance: f64) -> f64 {
+    -libm::log((1e-4 * tolerance).clamp(1e-20, 1e-3))
+}
+
+/// The angle at which Beckmann's `exp(-tan²/alpha²)` has fallen that far.
+pub(super) fn gaussian_reach(alpha: f64, tolerance: f64) -> f64 {
+    libm::atan(alpha * decay(tolerance).sqrt())
+}
+
+/// Ends of the panels in `delta - theta`, in order.
+fn breaks(theta: f64, reach: f64) -> Vec<f64> {
+    let corner = (2.0 * theta - FRAC_PI_2).abs();
+    let last = 0.5 * (FRAC_PI_2 + theta);
+    let (lo, hi) = ((-theta).max(-reach), (last - theta).min(reach));
+    let deltas = [corner, corner / 3.0, (2.0 * theta + FRAC_PI_2) / 3.0, 0.5 * (FRAC_PI_2 - theta)];
+    let mut all: Vec<f64> = deltas.map(|d| d - theta).into();
+    // where all three heights meet
+    all.push(libm::acos((std::f64::consts::SQRT_2 * libm::cos(theta)).min(1.0)) - theta);
+    all.extend([0.0, lo, hi]);
+    all.retain(|u| (lo..=hi).contains(u));
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    all
+}

@@ -1,0 +1,84 @@
+//! Radii with the density of a diffusion profile: the inverse of its cumulative distribution.
+
+use super::profile::{self, Profile};
+use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use crate::cite;
+use crate::grid::{Axis, Quantity, Texel};
+use crate::integrate::{Estimate, MAX_CHANNELS};
+use crate::math::root::solve;
+use crate::terms::burley_diffusion;
+
+/// Registry entry.
+pub static INFO: TableInfo = TableInfo {
+    id: "diffusion-sampling",
+    title: "Radii that sample a diffusion profile",
+    formula: "r(u) with int_0^r 2 pi s R(s) ds = u int_0^inf 2 pi s R(s) ds",
+    sources: &[
+        (cite::CHRISTENSEN_BURLEY_2015, "Eq. 11 (profile burley), inverted in closed form"),
+        (cite::DEON_LUEBKE_2007, "Fig. 14-13 (profile skin)"),
+    ],
+    coordinates: &["u"],
+    layouts: &[Layout {
+        id: "radius",
+        doc: "distance to move along the surface, in mm",
+        channels: &[
+            ChannelInfo { id: "radius.r", meaning: "r(u), mm, red", range: [0.0, 3.4e38] },
+            ChannelInfo { id: "radius.g", meaning: "r(u), mm, green", range: [0.0, 3.4e38] },
+            ChannelInfo { id: "radius.b", meaning: "r(u), mm, blue", range: [0.0, 3.4e38] },
+        ],
+    }],
+    extra: &[],
+    model: ModelUse::None,
+    params: profile::PARAMS,
+    laws: &["finite", "range", "monotone"],
+    axes: default_axes,
+    notes: "u = 1 is infinitely far and counts as 1 - 2^-53. The slope grows towards both ends; the default axis ends at 0.999.",
+    bind,
+};
+
+fn default_axes() -> Vec<Axis> {
+    let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([0.0, 0.999]);
+    Quantity::find("u").map(axis).into_iter().collect()
+}
+
+struct Table {
+    u: usize,
+    profile: Profile,
+}
+
+fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
+    Ok(Box::new(Table { u: spec.coordinate("u")?, profile: Profile::new(spec)? }))
+}
+
+impl Baker for Table {
+    fn texel(&self, at: &[f64], _tolerance: f64) -> Result<Estimate, TexelError> {
+        let u = at[self.u].min(1.0 - 0.5 * f64::EPSILON);
+        let mut value = [0.0; MAX_CHANNELS];
+        if let Profile::Burley { scale, .. } = &self.profile {
+            for (v, l) in value.iter_mut().zip(scale) {
+                *v = l * burley_diffusion::cdf_inverse(u);
+            }
+            return super::closed_form(value, 3);
+        }
+        let mut e = Estimate::exact(value);
+        let end = self.profile.scales().last().copied().unwrap_or(0.0);
+        for c in 0..3 {
+            // each side of the median keeps its own digits
+            let miss = |r: f64| if u < 0.5 { self.profile.inside(r)[c] - u } else { (1.0 - u) - self.profile.outside(r)[c] };
+            let r = if u > 0.0 { solve(0.0, end, |r| (miss(r), self.profile.ring(r)[c])) } else { 0.0 };
+            let left = miss(r).abs() / self.profile.ring(r)[c];
+            e.value[c] = r;
+            e.error[c] = 1e-14 * r + if left.is_finite() { left } else { 0.0 };
+        }
+        e.evaluations = 3 * 8;
+        super::finite(e, 3)
+    }
+
+    fn rule(&self) -> String {
+        match self.profile {
+            Profile::Burley { .. } => "closed form",
+            _ => "Newton's method in a bracket on the closed cumulative distribution",
+        }
+        .to_owned()
+    }
+}

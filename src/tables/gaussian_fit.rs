@@ -1,0 +1,229 @@
+//! A sum of Gaussians for a diffusion profile, with what it leaves over.
+//!
+//! Gaussians are closed under convolution and separate into x and y, so texture-space diffusion blurs by a ladder of
+//! them. The k variances are shared by the channels, as the ladder needs; the weights are each channel's own, not
+//! negative, and sum to 1, so that the fit keeps the energy.
+//!
+//! What is minimised: the sum over channels of `int (p - q)^2 dr / int p^2 dr`, p = 2 pi r R and q the same of the fit. (The
+//! published fit weighs by r instead of r^2, for which a profile that grows as 1/r has no finite error.) Variances
+//! by Nelder and Mead in their logarithms, weights by non-negative least squares within.
+
+use super::profile::{self, Profile, Rgb};
+use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use crate::cite;
+use crate::grid::{Axis, Quantity, Texel};
+use crate::integrate::{Estimate, MAX_CHANNELS, gauss};
+use crate::math::{least_squares, simplex};
+use crate::models::ParamError;
+use std::sync::OnceLock;
+
+/// Most Gaussians of a fit.
+pub const MOST: usize = 16;
+
+const VARIANCE: ChannelInfo =
+    ChannelInfo { id: "gaussian.variance", meaning: "variance v, mm^2", range: [0.0, 1e9] };
+const RED: ChannelInfo = ChannelInfo { id: "weight.r", meaning: "weight of red", range: [0.0, 1.0] };
+const GREEN: ChannelInfo = ChannelInfo { id: "weight.g", meaning: "weight of green", range: [0.0, 1.0] };
+const BLUE: ChannelInfo = ChannelInfo { id: "weight.b", meaning: "weight of blue", range: [0.0, 1.0] };
+
+/// Registry entry.
+pub static INFO: TableInfo = TableInfo {
+    id: "gaussian-fit",
+    title: "Sum of Gaussians fitted to a diffusion profile",
+    formula: "R(r) ~ sum w_i exp(-r^2 / (2 v_i)) / (2 pi v_i), w_i >= 0, sum w_i = 1",
+    sources: &[
+        (cite::DEON_LUEBKE_2007, "section 14.4.3, sum-of-Gaussians fit"),
+        (cite::LAWSON_HANSON_1974, "chapter 23"),
+        (cite::NELDER_MEAD_1965, "the method"),
+    ],
+    coordinates: &["gaussian"],
+    layouts: &[
+        Layout {
+            id: "weights",
+            doc: "texel i holds Gaussian i, the narrowest first; not to be interpolated",
+            channels: &[VARIANCE, RED, GREEN, BLUE],
+        },
+        Layout {
+            id: "weights-residual",
+            doc: "the same, and in every texel what the fit leaves over: the root of int (p - q)^2 / int p^2, p = 2 pi r R",
+            channels: &[
+                VARIANCE,
+                RED,
+                GREEN,
+                BLUE,
+                ChannelInfo { id: "residual.r", meaning: "relative residual of red", range: [0.0, 1.0] },
+                ChannelInfo { id: "residual.g", meaning: "relative residual of green", range: [0.0, 1.0] },
+                ChannelInfo { id: "residual.b", meaning: "relative residual of blue", range: [0.0, 1.0] },
+            ],
+        },
+    ],
+    extra: &[],
+    model: ModelUse::None,
+    params: profile::PARAMS,
+    laws: &["finite", "range", "total"],
+    axes: default_axes,
+    notes: "The length of the axis is the number of Gaussians, at most 16. The error of the texels is rounding; what the fit leaves over stands in \
+        the rule of the file and in the layout weights-residual. Switch reconstruction off: nobody reads between Gaussians.",
+    bind,
+};
+
+fn default_axes() -> Vec<Axis> {
+    let axis = |q| Axis::new(q, 6, Texel::Endpoint).over([0.0, 5.0]);
+    Quantity::find("gaussian").map(axis).into_iter().collect()
+}
+
+/// A fit: variances, rising, with the weights of the channels, and the relative residual of each channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fit {
+    /// Variance in mm² and weights.
+    pub lobes: Vec<(f64, Rgb)>,
+    /// `sqrt(int (p - q)^2 dr / int p^2 dr)`.
+    pub residual: Rgb,
+}
+
+struct Table {
+    axis: Axis,
+    profile: Profile,
+    /// Made when it is first asked for: a recipe that is only checked needs no fit.
+    fit: OnceLock<Fit>,
+}
+
+fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
+    let axis = spec.grid.axes()[spec.coordinate("gaussian")?].clone();
+    if axis.len > MOST {
+        let why = format!("a fit of {} Gaussians; at most {MOST} can be told apart", axis.len);
+        return Err(ParamError::Together { model: spec.kind.id, why }.into());
+    }
+    Ok(Box::new(Table { axis, profile: Profile::new(spec)?, fit: OnceLock::new() }))
+}
+
+impl Table {
+    fn fit(&self) -> &Fit {
+        self.fit.get_or_init(|| fit(&self.profile, self.axis.len))
+    }
+}
+
+impl Baker for Table {
+    fn texel(&self, at: &[f64], _tolerance: f64) -> Result<Estimate, TexelError> {
+        let fit = self.fit();
+        let apart = |i: usize| (self.axis.value(i, 0.0) - at[0]).abs();
+        let nearest = (0..self.axis.len).min_by(|&i, &j| apart(i).total_cmp(&apart(j))).unwrap_or(0);
+        let (variance, weights) = fit.lobes[nearest];
+        let mut value = [0.0; MAX_CHANNELS];
+        value[0] = variance;
+        value[1..4].copy_from_slice(&weights);
+        value[4..7].copy_from_slice(&fit.residual);
+        super::closed_form(value, 7)
+    }
+
+    fn rule(&self) -> String {
+        let [r, g, b] = self.fit().residual;
+        format!(
+            "least squares of 2 pi r R over r, weights not negative with sum 1, variances shared; \
+             relative residual red {r:.2e}, green {g:.2e}, blue {b:.2e}"
+        )
+    }
+}
+
+/// Nodes of the integrals over r, and the profile there.
+struct Problem {
+    radii: Vec<f64>,
+    weights: Vec<f64>,
+    /// `2 pi r R` of each channel.
+    ring: [Vec<f64>; 3],
+    /// `int p^2 dr`.
+    norm: Rgb,
+}
+
+/// Fits `count` Gaussians to a profile.
+#[must_use]
+pub fn fit(profile: &Profile, count: usize) -> Fit {
+    let problem = Problem::new(profile);
+    let ends = [0.05, 0.97].map(|part| radius(profile, part));
+    let step = if count > 1 { libm::log(ends[1] / ends[0]) * 2.0 / (count - 1) as f64 } else { 1.0 };
+    let start: Vec<f64> = (0..count)
+        .map(|i| {
+            let first = if count > 1 { ends[0] } else { (ends[0] * ends[1]).sqrt() };
+            libm::log(0.5 * first * first) + i as f64 * step
+        })
+        .collect();
+    let best = simplex::minimise(&start, 0.4 * step, 4, 250 * count, &mut |logs| {
+        problem.solve(logs).1.iter().map(|r| r * r).sum()
+    });
+    let mut logs = best;
+    logs.sort_by(f64::total_cmp);
+    let (weights, residual) = problem.solve(&logs);
+    let lobes = logs.iter().enumerate().map(|(i, v)| (libm::exp(*v), [0, 1, 2].map(|c| weights[c][i]))).collect();
+    Fit { lobes, residual }
+}
+
+/// Smallest or largest radius of the channels inside which a part of the light leaves, to a few percent.
+fn radius(profile: &Profile, part: f64) -> f64 {
+    let scales = profile.scales();
+    let (mut lo, mut hi) = (1e-3 * scales[0], scales[scales.len() - 1]);
+    for _ in 0..60 {
+        let middle = (lo * hi).sqrt();
+        let inside = profile.inside(middle);
+        let enough = if part < 0.5 { inside.iter().any(|f| *f > part) } else { inside.iter().all(|f| *f > part) };
+        if enough { hi = middle } else { lo = middle }
+    }
+    hi
+}
+
+impl Problem {
+    fn new(profile: &Profile) -> Problem {
+        let mut ends = vec![0.0];
+        ends.extend(profile.scales());
+        let mut p = Problem {
+            radii: Vec::new(),
+            weights: Vec::new(),
+            ring: [const { Vec::new() }; 3],
+            norm: [0.0; 3],
+        };
+        let rule = gauss::rule(16);
+        for pair in ends.windows(2) {
+            for (x, w) in rule.nodes.iter().zip(&rule.weights) {
+                let (r, w) = (pair[0] + (pair[1] - pair[0]) * x, (pair[1] - pair[0]) * w);
+                p.radii.push(r);
+                p.weights.push(w);
+                for (c, v) in profile.ring(r).into_iter().enumerate() {
+                    p.ring[c].push(v);
+                    p.norm[c] += w * v * v;
+                }
+            }
+        }
+        p
+    }
+
+    /// Weights of each channel for variances given by their logarithms, and the relative residuals.
+    fn solve(&self, logs: &[f64]) -> ([Vec<f64>; 3], Rgb) {
+        /// Weight of the equation "the weights sum to 1", relative to the others.
+        const STIFF: f64 = 1e4;
+        let columns: Vec<Vec<f64>> = logs
+            .iter()
+            .map(|log| {
+                let v = libm::exp(log.clamp(-60.0, 60.0));
+                self.radii.iter().map(|r| r / v * libm::exp(-0.5 * r * r / v)).collect()
+            })
+            .collect();
+        let dot = |a: &[f64], b: &[f64]| -> f64 {
+            a.iter().zip(b).zip(&self.weights).map(|((a, b), w)| a * b * w).sum()
+        };
+        let gram: Vec<Vec<f64>> = columns.iter().map(|a| columns.iter().map(|b| dot(a, b)).collect()).collect();
+        let mut residual = [0.0; 3];
+        let weights = [0, 1, 2].map(|c| {
+            let stiff = STIFF * self.norm[c];
+            let b: Vec<f64> = columns.iter().map(|a| dot(a, &self.ring[c]) + stiff).collect();
+            let g: Vec<Vec<f64>> = gram.iter().map(|row| row.iter().map(|x| x + stiff).collect()).collect();
+            let mut w = least_squares::nonnegative(&g, &b);
+            let sum: f64 = w.iter().sum();
+            w.iter_mut().for_each(|w| *w /= sum);
+            let left: Vec<f64> = (0..self.radii.len())
+                .map(|i| self.ring[c][i] - columns.iter().zip(&w).map(|(a, w)| w * a[i]).sum::<f64>())
+                .collect();
+            residual[c] = (dot(&left, &left) / self.norm[c]).sqrt();
+            w
+        });
+        (weights, residual)
+    }
+}

@@ -1,0 +1,69 @@
+//! Transmittance of thin parts (ears, nostrils) over their thickness, from a diffusion profile.
+//!
+//! Light that enters everywhere on the far side of a slab of thickness d, and spreads by the profile over the distance
+//! `sqrt(r^2 + d^2)`: `T(d) = 2 pi int R(sqrt(r^2 + d^2)) r dr`, which is the part of the profile beyond radius d.
+
+use super::profile::{self, Profile};
+use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use crate::cite;
+use crate::grid::{Axis, Quantity, Texel};
+use crate::integrate::{Estimate, MAX_CHANNELS};
+use std::f64::consts::SQRT_2;
+
+const CHANNELS: &[ChannelInfo] = &[
+    ChannelInfo { id: "transmitted.r", meaning: "T(d), red", range: [0.0, 1.0] },
+    ChannelInfo { id: "transmitted.g", meaning: "T(d), green", range: [0.0, 1.0] },
+    ChannelInfo { id: "transmitted.b", meaning: "T(d), blue", range: [0.0, 1.0] },
+];
+
+/// Registry entry.
+pub static INFO: TableInfo = TableInfo {
+    id: "skin-transmittance",
+    title: "Transmittance of thin parts by a diffusion profile",
+    formula: "T(d) = 2 pi int R(sqrt(r^2 + d^2)) r dr; of Gaussians sum w_i exp(-d^2 / (2 v_i))",
+    sources: &[
+        (cite::DEON_LUEBKE_2007, "section 14.5.6"),
+        (cite::JIMENEZ_2010, "the transmittance profile (layout jimenez)"),
+    ],
+    coordinates: &["thickness"],
+    layouts: &[
+        Layout { id: "gpu-gems", doc: "sum w_i exp(-d^2 / (2 v_i))", channels: CHANNELS },
+        Layout { id: "jimenez", doc: "sum w_i exp(-d^2 / v_i): T at the thickness sqrt(2) d", channels: CHANNELS },
+    ],
+    extra: &[],
+    model: ModelUse::None,
+    params: profile::PARAMS,
+    laws: &["finite", "range", "monotone"],
+    axes: default_axes,
+    notes: "The two layouts differ by a factor 2 in the exponent and are not interchangeable. Other profiles than Gaussians follow the same \
+        reasoning: the part beyond d.",
+    bind,
+};
+
+fn default_axes() -> Vec<Axis> {
+    let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([0.0, 8.0]);
+    Quantity::find("thickness").map(axis).into_iter().collect()
+}
+
+struct Table {
+    thickness: usize,
+    profile: Profile,
+    factor: f64,
+}
+
+fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
+    let factor = if spec.layout.id == "jimenez" { SQRT_2 } else { 1.0 };
+    Ok(Box::new(Table { thickness: spec.coordinate("thickness")?, profile: Profile::new(spec)?, factor }))
+}
+
+impl Baker for Table {
+    fn texel(&self, at: &[f64], _tolerance: f64) -> Result<Estimate, TexelError> {
+        let mut value = [0.0; MAX_CHANNELS];
+        value[..3].copy_from_slice(&self.profile.outside(self.factor * at[self.thickness]));
+        super::closed_form(value, 3)
+    }
+
+    fn rule(&self) -> String {
+        "closed form".to_owned()
+    }
+}

@@ -1,0 +1,191 @@
+//! What is spread out adds up: diffusion moves light and makes none, a density integrates to 1, weights sum to 1.
+//!
+//! The sums are taken over fresh values at the nodes of another rule, in another variable than the baker's.
+
+use super::{Case, Law, Outcome};
+use crate::integrate::{Sums, line};
+use crate::tables::profile::Profile;
+use crate::tables::{Baker, diffusion_profile};
+use std::f64::consts::PI;
+
+/// The law.
+pub static LAW: Law = Law {
+    id: "total",
+    statement: "the integral over the whole domain is what the formula promises (a mean, an albedo, 1)",
+    margin: "the errors of both sides minus the difference, over the rows of the table that were checked",
+    code: 2005,
+    check,
+};
+
+/// Most rows of a table that are checked.
+const ROWS: usize = 8;
+
+/// Relative rounding of a sum.
+const ROUNDING: f64 = 1e-12;
+
+fn check(case: &Case<'_>) -> Outcome {
+    match case.bound.spec.kind.id {
+        "preintegrated-skin" => skin(case),
+        "diffusion-profile" => radial(case),
+        "diffusion-kernel" => kernel(case),
+        "gaussian-fit" => weights(case),
+        _ => Outcome::vacuous("nothing to add up"),
+    }
+}
+
+/// Over ring: `int_0^pi D dtheta = 1`; over the sphere: `int_0^pi D sin dtheta = 1/2`; as clamp(N.L).
+fn skin(case: &Case<'_>) -> Outcome {
+    let spec = &case.bound.spec;
+    let (Some(ndotl), Some(curvature)) = (spec.axis("ndotl"), spec.axis("curvature")) else {
+        return Outcome::vacuous("no angle or curvature");
+    };
+    let sphere = spec.params.choice("over") == "sphere";
+    let expected = if sphere { 0.5 } else { 1.0 };
+    let mut outcome = Outcome::start();
+    for value in rows(case, curvature) {
+        let mut at = vec![0.0; spec.grid.axes().len()];
+        at[curvature] = value;
+        let measure = |theta: f64| if sphere { libm::sin(theta) } else { 1.0 };
+        let near = (3.0 * value).min(0.5);
+        let breaks = [0.0, 0.5 * PI - near, 0.5 * PI, 0.5 * PI + near, PI];
+        let sum = add_up(&*case.bound.baker, &breaks, 3, case.tolerance, |theta| {
+            at[ndotl] = libm::cos(theta);
+            (at.clone(), measure(theta))
+        });
+        tighten(&mut outcome, &sum, 0..3, expected, || format!("curvature = {value:.6}"));
+    }
+    outcome
+}
+
+/// `int ring dr`, or `2 pi int area r dr`, is what the table says that it is scaled to; `inside` ends there.
+fn radial(case: &Case<'_>) -> Outcome {
+    let spec = &case.bound.spec;
+    let Ok(profile) = Profile::new(spec) else { return Outcome::vacuous("no profile") };
+    let expected = if spec.layout.id == "inside" {
+        return ends(case, &profile);
+    } else {
+        diffusion_profile::factor(spec, &profile)
+    };
+    let area = spec.layout.id == "area";
+    let sum = add_up(&*case.bound.baker, &outwards(&profile), 3, case.tolerance, |r| {
+        (vec![r], if area { 2.0 * PI * r } else { 1.0 })
+    });
+    let mut outcome = Outcome::start();
+    for (c, expected) in expected.iter().enumerate() {
+        tighten(&mut outcome, &sum, c..c + 1, *expected, || "all distances".to_owned());
+    }
+    outcome
+}
+
+/// `2 int L dx = 1`; the cumulative kernel ends at 1.
+fn kernel(case: &Case<'_>) -> Outcome {
+    let Ok(profile) = Profile::new(&case.bound.spec) else { return Outcome::vacuous("no profile") };
+    if case.bound.spec.layout.id == "cumulative" {
+        return ends(case, &profile);
+    }
+    let sum = add_up(&*case.bound.baker, &outwards(&profile), 3, case.tolerance, |x| (vec![x], 2.0));
+    let mut outcome = Outcome::start();
+    tighten(&mut outcome, &sum, 0..3, 1.0, || "all offsets".to_owned());
+    outcome
+}
+
+/// A cumulative table is 0 at 0 and everything far out.
+fn ends(case: &Case<'_>, profile: &Profile) -> Outcome {
+    let spec = &case.bound.spec;
+    let all = if spec.kind.id == "diffusion-profile" { diffusion_profile::factor(spec, profile) } else { [1.0; 3] };
+    let end = outwards(profile).last().copied().unwrap_or(0.0);
+    let mut outcome = Outcome::start();
+    for (at, part) in [(0.0, 0.0), (1e3 * end, 1.0)] {
+        match case.bound.baker.texel(&[at], case.tolerance) {
+            Ok(e) => {
+                for (c, all) in all.iter().enumerate() {
+                    // beyond the end of the profile less than 1e-17 leaves, of the kernel of a slow tail a little more
+                    let margin = e.error[c] + 1e-10 - (e.value[c] - part * all).abs();
+                    outcome.tighten(margin, || format!("channel {c}: {} at {at}", e.value[c]));
+                }
+            }
+            Err(_) => outcome.tighten(f64::NAN, || format!("no value at {at}")),
+        }
+    }
+    outcome
+}
+
+fn outwards(profile: &Profile) -> Vec<f64> {
+    let mut breaks = vec![0.0];
+    breaks.extend(profile.scales());
+    breaks
+}
+
+/// The weights of each channel sum to 1.
+fn weights(case: &Case<'_>) -> Outcome {
+    let channels = case.table.channels.len();
+    let mut outcome = Outcome::start();
+    for c in 1..4 {
+        let sum: f64 = (0..case.table.grid.len()).map(|t| case.table.values[t * channels + c]).sum();
+        outcome.tighten(ROUNDING - (sum - 1.0).abs(), || format!("{} sum to {sum}", case.table.channels[c].id));
+    }
+    outcome
+}
+
+/// Up to [`ROWS`] values of an axis, spread over it.
+fn rows(case: &Case<'_>, axis: usize) -> Vec<f64> {
+    let grid = &case.bound.spec.grid;
+    let stride: usize = grid.axes()[..axis].iter().map(|a| a.len).product();
+    let len = grid.axes()[axis].len;
+    let count = len.min(ROWS);
+    (0..count)
+        .map(|i| grid.texel(stride * (i * (len - 1) / (count - 1).max(1))).values()[axis])
+        .collect()
+}
+
+/// A sum over fresh texels, with its own error and the largest that the baker admits, times the measure.
+struct Total {
+    value: Sums,
+    error: Sums,
+}
+
+/// `int values(x) measure(x) dx` over the breaks; `place` gives the point of the grid and the measure.
+fn add_up(
+    baker: &dyn Baker,
+    breaks: &[f64],
+    channels: usize,
+    tolerance: f64,
+    mut place: impl FnMut(f64) -> (Vec<f64>, f64),
+) -> Total {
+    let mut admitted = [0.0f64; 3];
+    let mut largest_measure = 0.0f64;
+    let e = line::integrate(breaks, channels, tolerance, &mut |x, out| {
+        let (at, measure) = place(x);
+        largest_measure = largest_measure.max(measure);
+        match baker.texel(&at, tolerance) {
+            Ok(texel) => {
+                for c in 0..channels {
+                    out[c] = measure * texel.value[c];
+                    admitted[c.min(2)] = admitted[c.min(2)].max(texel.error[c]);
+                }
+            }
+            Err(_) => out[..channels].fill(f64::NAN),
+        }
+    });
+    let length = breaks.last().copied().unwrap_or(0.0) - breaks.first().copied().unwrap_or(0.0);
+    let mut error = e.error;
+    for (c, error) in error.iter_mut().enumerate().take(channels) {
+        *error += admitted[c.min(2)] * length * largest_measure;
+    }
+    Total { value: e.value, error }
+}
+
+fn tighten(
+    outcome: &mut Outcome,
+    sum: &Total,
+    channels: std::ops::Range<usize>,
+    expected: f64,
+    at: impl Fn() -> String,
+) {
+    for c in channels {
+        let (value, error) = (sum.value[c], sum.error[c] + ROUNDING);
+        outcome.tighten(error - (value - expected).abs(), || {
+            format!("channel {c}: {value:.12} against {expected}, {}", at())
+        });
+    }
+}

@@ -1,0 +1,12 @@
+//! Tables of skin, volumes, Fresnel factors, sampling and tabulated BRDFs, against values that this program did not make.
+#![allow(clippy::unwrap_used, reason = "test")]
+
+mod common;
+#[path = "tables_skin/diffusion.rs"]
+mod diffusion;
+#[path = "tables_skin/helpers.rs"]
+mod helpers;
+#[path = "tables_skin/line.rs"]
+mod line;
+#[path = "tables_skin/preintegrated.rs"]
+mod preintegrated;
