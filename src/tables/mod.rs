@@ -14,6 +14,8 @@ pub mod gaussian_fit;
 pub mod integral;
 pub mod kelemen_beckmann;
 pub mod ltc_fit;
+pub mod ltc_magnitude;
+pub mod ltc_matrix;
 pub mod ndf;
 pub mod preintegrated_skin;
 pub mod profile;
@@ -23,7 +25,8 @@ pub mod spec;
 pub mod sweep;
 
 use crate::cite::Cite;
-use crate::grid::{Axis, Channel, table::named};
+use crate::grid::provenance::Residual;
+use crate::grid::{Axis, Channel, Table, table::named};
 use crate::integrate::Estimate;
 use crate::models::Param;
 pub use selection::Selection;
@@ -37,6 +40,8 @@ pub static TABLES: &[&TableInfo] = &[
     &fresnel_dielectric::INFO,
     &ndf::INFO,
     &kelemen_beckmann::INFO,
+    &ltc_matrix::INFO,
+    &ltc_magnitude::INFO,
     &preintegrated_skin::INFO,
     &diffusion_profile::INFO,
     &diffusion_kernel::INFO,
@@ -55,6 +60,12 @@ pub trait Baker: Send + Sync {
 
     /// The rule in words, for metadata.
     fn rule(&self) -> String;
+
+    /// What the values themselves leave open where they are parameters of a fit: how far the fits are from what they were
+    /// fitted to. Empty for tables of exact values.
+    fn residuals(&self, _table: &Table) -> Vec<Residual> {
+        Vec::new()
+    }
 }
 
 /// Why a texel has no value. The driver adds where.

@@ -30,6 +30,6 @@ pub(super) fn white(case: &Case<'_>, texel: usize) -> Option<(f64, f64)> {
     if let (Some(a), Some(b)) = (position("dfg.scale"), position("dfg.bias")) {
         return Some((values[a] + values[b], errors[a] + errors[b]));
     }
-    let i = ["dfg.total", "e", "e-avg"].into_iter().find_map(position)?;
+    let i = ["dfg.total", "e", "e-avg", "ltc.magnitude"].into_iter().find_map(position)?;
     Some((values[i], errors[i]))
 }

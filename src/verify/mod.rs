@@ -8,6 +8,7 @@ pub mod cross_check;
 pub mod energy;
 pub mod finding;
 pub mod finite;
+pub mod lobe;
 pub mod monotone;
 pub mod normalised;
 pub mod range;
@@ -35,6 +36,7 @@ pub static LAWS: &[&Law] = &[
     &normalised::LAW,
     &total::LAW,
     &reversible::LAW,
+    &lobe::LAW,
     &cross_check::LAW,
     &reciprocity::LAW,
 ];

@@ -59,6 +59,7 @@ pub(crate) fn provenance(table: &Table, storage: Storage) -> Provenance {
             storage: storage.id().to_owned(),
             largest_error: quantise_table(table, storage).map_or(0.0, |q| q.largest_error.value),
         }),
+        residuals: Vec::new(),
         reconstruction: None,
         laws: vec![LawRecord {
             law: "energy".to_owned(),
