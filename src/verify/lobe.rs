@@ -44,7 +44,8 @@ fn check(case: &Case<'_>) -> Outcome {
     for (i, texel) in seeds::texels(case.table, TEXELS, 0x17c).into_iter().enumerate() {
         let point = case.table.grid.texel(texel);
         let view = sweep.view(point.values());
-        let (Ok(model), Some(m)) = (sweep.model(point.values()), ltc_matrix::stored(case.table, texel)) else {
+        let (Ok(model), Some(m)) = (sweep.model(point.values()), ltc_matrix::stored(case.table, texel))
+        else {
             continue;
         };
         // in the horizon the sampler has nothing to see
@@ -80,9 +81,10 @@ fn variation(
 ) -> crate::integrate::sobol::ReplicateMean {
     let wo = view.direction();
     let [mean] = replicate_mean(seed, REPLICATES, POINTS, |u| {
-        let weight = model.sample(wo, u).filter(|s| s.pdf > 0.0).map_or(0.0, |s| {
-            (model.eval(wo, s.wi) * s.wi.z / albedo - m.density(s.wi)).max(0.0) / s.pdf
-        });
+        let weight = model
+            .sample(wo, u)
+            .filter(|s| s.pdf > 0.0)
+            .map_or(0.0, |s| (model.eval(wo, s.wi) * s.wi.z / albedo - m.density(s.wi)).max(0.0) / s.pdf);
         [weight]
     });
     mean

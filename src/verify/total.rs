@@ -92,7 +92,8 @@ fn kernel(case: &Case<'_>) -> Outcome {
 /// A cumulative table is 0 at 0 and everything far out.
 fn ends(case: &Case<'_>, profile: &Profile) -> Outcome {
     let spec = &case.bound.spec;
-    let all = if spec.kind.id == "diffusion-profile" { diffusion_profile::factor(spec, profile) } else { [1.0; 3] };
+    let all =
+        if spec.kind.id == "diffusion-profile" { diffusion_profile::factor(spec, profile) } else { [1.0; 3] };
     let end = outwards(profile).last().copied().unwrap_or(0.0);
     let mut outcome = Outcome::start();
     for (at, part) in [(0.0, 0.0), (1e3 * end, 1.0)] {
@@ -122,7 +123,8 @@ fn weights(case: &Case<'_>) -> Outcome {
     let mut outcome = Outcome::start();
     for c in 1..4 {
         let sum: f64 = (0..case.table.grid.len()).map(|t| case.table.values[t * channels + c]).sum();
-        outcome.tighten(ROUNDING - (sum - 1.0).abs(), || format!("{} sum to {sum}", case.table.channels[c].id));
+        outcome
+            .tighten(ROUNDING - (sum - 1.0).abs(), || format!("{} sum to {sum}", case.table.channels[c].id));
     }
     outcome
 }
@@ -133,9 +135,7 @@ fn rows(case: &Case<'_>, axis: usize) -> Vec<f64> {
     let stride: usize = grid.axes()[..axis].iter().map(|a| a.len).product();
     let len = grid.axes()[axis].len;
     let count = len.min(ROWS);
-    (0..count)
-        .map(|i| grid.texel(stride * (i * (len - 1) / (count - 1).max(1))).values()[axis])
-        .collect()
+    (0..count).map(|i| grid.texel(stride * (i * (len - 1) / (count - 1).max(1))).values()[axis]).collect()
 }
 
 /// A sum over fresh texels, with its own error and the largest that the baker admits, times the measure.

@@ -189,8 +189,7 @@ mod tests {
             let mut d = [0.0; N];
             let h = 1e-5;
             d[i] = h;
-            let (up, down) =
-                (step(&b, d), step(&b, d.map(|x| -x)));
+            let (up, down) = (step(&b, d), step(&b, d.map(|x| -x)));
             let sum = |b: &Inverse| -> f64 {
                 nodes.iter().map(|n| n.weight * libm::pow((n.lobe - b.density(n.w)).abs(), 3.0)).sum()
             };

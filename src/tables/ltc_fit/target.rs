@@ -56,7 +56,8 @@ impl<'a> Target<'a> {
     fn gather(&mut self, own: usize) {
         let (parts, nodes) = (&self.parts, &mut self.nodes);
         let chart = parts[own].1.chart().unwrap_or(Chart::Broad { kinks: true });
-        let (mut values, mut sum, mut cubes, mut mine) = ([0.0; BATCH], [0.0; BATCH], [0.0; BATCH], [0.0; BATCH]);
+        let (mut values, mut sum, mut cubes, mut mine) =
+            ([0.0; BATCH], [0.0; BATCH], [0.0; BATCH], [0.0; BATCH]);
         chart.visit(self.view, self.level, &mut |batch| {
             sum.fill(0.0);
             cubes.fill(0.0);
@@ -142,6 +143,11 @@ impl<'a> Target<'a> {
                 }
             }
         }
+    }
+
+    /// True if the surface reflects nothing at this view.
+    pub(super) fn is_dark(&self) -> bool {
+        self.albedo <= f64::MIN_POSITIVE
     }
 
     /// A lobe with the mean direction and the widths of the square of the target.
