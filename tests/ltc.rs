@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "test")]
 
 mod common;
+use brdfbake::grid::provenance::Waiver;
 use brdfbake::grid::{Axis, Direction, Texel, Warp};
 use brdfbake::integrate::View;
 use brdfbake::models::{self, Brdf, Params};
@@ -247,8 +248,11 @@ fn other_models_have_tables() {
         let largest = table.values.iter().skip(4).step_by(6).fold(0.0f64, |m, v| m.max(*v));
         println!("{id}: L3 at most {largest:.4}, mean {:.4}", residuals[0].spread.mean);
         assert!((residuals[0].spread.largest.value - largest).abs() <= 0.01 * largest + 1e-5, "{id}");
+        // Zeltner's lobes are not reciprocal, and say so
+        let waivers = [Waiver { law: "reciprocity".to_owned(), reason: "the model is not".to_owned() }];
+        let waivers = if id == "ltc-sheen" { &waivers[..] } else { &[] };
         let (verified, _) =
-            verify::check(&bound, table, TOLERANCE, &[]).unwrap_or_else(|f| panic!("{id}: {f:?}"));
+            verify::check(&bound, table, TOLERANCE, waivers).unwrap_or_else(|f| panic!("{id}: {f:?}"));
         assert!(verified.laws().iter().any(|l| l.law == "lobe" && l.held), "{id}");
     }
 }

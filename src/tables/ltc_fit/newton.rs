@@ -95,8 +95,7 @@ pub(super) fn refine(nodes: &Slices, last: &Optimum, family: Family) -> Optimum 
         (optimum.at.value, optimum.at.gradient) = gradient(nodes, &optimum.inverse);
         let Some(d) = direction(&optimum.at, family, 0.0) else { break };
         let length = d.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-        // not written as `>`: NaN is not nearby
-        if !(length < before) {
+        if length.is_nan() || length >= before {
             break;
         }
         optimum.inverse = step(&optimum.inverse, d);
@@ -113,13 +112,12 @@ pub(super) fn refine(nodes: &Slices, last: &Optimum, family: Family) -> Optimum 
 fn direction(at: &Objective, family: Family, damping: f64) -> Option<[f64; N]> {
     let basis = family.basis();
     let k = basis.len();
+    let dot = |u: &[f64; N], v: &[f64; N]| -> f64 { u.iter().zip(v).map(|(a, b)| a * b).sum() };
     let (mut h, mut g) = ([[0.0; N]; N], [0.0; N]);
     for (i, u) in basis.iter().enumerate() {
-        for a in 0..N {
-            g[i] -= u[a] * at.gradient[a];
-            for (j, v) in basis.iter().enumerate() {
-                h[i][j] += (0..N).map(|b| u[a] * at.hessian[a][b] * v[b]).sum::<f64>();
-            }
+        g[i] = -dot(u, &at.gradient);
+        for (j, v) in basis.iter().enumerate() {
+            h[i][j] = dot(u, &at.hessian.map(|row| dot(&row, v)));
         }
     }
     for (i, row) in h.iter_mut().enumerate().take(k) {
@@ -143,10 +141,8 @@ fn direction(at: &Objective, family: Family, damping: f64) -> Option<[f64; N]> {
 fn solve(h: &mut [[f64; N]; N], mut x: [f64; N], k: usize) -> Option<[f64; N]> {
     for i in 0..k {
         for j in 0..=i {
-            let mut sum = h[i][j];
-            for m in 0..j {
-                sum -= h[i][m] * h[j][m];
-            }
+            let known: f64 = h[i][..j].iter().zip(&h[j][..j]).map(|(a, b)| a * b).sum();
+            let sum = h[i][j] - known;
             if i == j {
                 if sum <= 0.0 || sum.is_nan() {
                     return None;
