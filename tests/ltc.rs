@@ -1,6 +1,6 @@
 //! Transformed cosines fitted to models: against the tables that engines ship, against lobes that fit exactly, and against
 //! quadratures that share no node with the fit.
-#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "test")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::cast_possible_truncation, reason = "test")]
 
 mod common;
 use brdfbake::grid::provenance::Waiver;
