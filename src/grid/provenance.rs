@@ -34,6 +34,9 @@ pub struct Provenance {
     pub channels: Vec<Channel>,
     /// Integration: rule, tolerance asked for, largest estimate, evaluations.
     pub integration: Integration,
+    /// Where the values are parameters of fits: how far the fits are from what they were fitted to.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub residuals: Vec<Residual>,
     /// How the values are stored and what the rounding costs.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub encoding: Option<Encoding>,
@@ -163,6 +166,16 @@ pub struct Reconstruction {
     /// Over `mu >= 0.05` and `roughness >= 0.09`, if the table has such axes.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub practical: Option<Spread>,
+}
+
+/// A measure of how far fitted values are from what they were fitted to, over all texels.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Residual {
+    /// The measure, as a formula.
+    pub meaning: String,
+    /// Its largest and mean value.
+    #[serde(flatten)]
+    pub spread: Spread,
 }
 
 /// Largest and mean error of a set of points.

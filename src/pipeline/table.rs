@@ -175,6 +175,7 @@ fn provenance(plan: &Plan, planned: &PlannedTable, verified: &Verified) -> Prove
             evaluations: table.total_evaluations(),
             missed: driver::missed(table, planned.tolerance) as u64,
         },
+        residuals: baker.residuals(table),
         encoding: None,
         reconstruction: None,
         size: planned.found.clone(),

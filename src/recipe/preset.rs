@@ -43,6 +43,7 @@ pub static PRESETS: &[Preset] = &[
         "ggx",
         "split sum, directional and average albedo of GGX: what `bake --scene` bakes for glTF materials"
     ),
+    preset!("ltc", "area lights: the matrices and magnitudes of linearly transformed cosines for GGX"),
     preset!("kelemen-skin", "the Beckmann texture of the skin shader of GPU Gems 3, chapter 14"),
 ];
 

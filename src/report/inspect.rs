@@ -125,6 +125,9 @@ fn measured(plane: &Plane) -> String {
 /// How good the table is: errors, laws, and where it came from.
 fn quality(lines: &mut Lines, p: &Provenance) {
     integration(lines, &p.integration);
+    for r in &p.residuals {
+        lines.item("fit", &format!("{}: {}", r.meaning, spread(&r.spread)));
+    }
     if let Some(e) = &p.encoding {
         lines
             .item("stored as", &format!("{}, rounding error at most {}", e.storage, number(e.largest_error)));

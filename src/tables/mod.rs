@@ -17,6 +17,8 @@ pub mod glass_compensation;
 pub mod integral;
 pub mod kelemen_beckmann;
 pub mod ltc_fit;
+pub mod ltc_magnitude;
+pub mod ltc_matrix;
 mod memo;
 pub mod ndf;
 pub mod preintegrated_skin;
@@ -29,7 +31,8 @@ pub mod spec;
 pub mod sweep;
 
 use crate::cite::Cite;
-use crate::grid::{Axis, Channel, table::named};
+use crate::grid::provenance::Residual;
+use crate::grid::{Axis, Channel, Table, table::named};
 use crate::integrate::Estimate;
 use crate::models::Param;
 pub use selection::Selection;
@@ -47,6 +50,8 @@ pub static TABLES: &[&TableInfo] = &[
     &fresnel_dielectric::INFO,
     &ndf::INFO,
     &kelemen_beckmann::INFO,
+    &ltc_matrix::INFO,
+    &ltc_magnitude::INFO,
     &preintegrated_skin::INFO,
     &diffusion_profile::INFO,
     &diffusion_kernel::INFO,
@@ -74,6 +79,12 @@ pub trait Baker: Send + Sync {
 
     /// Turns the channels at a point into [`Baker::decoded`], in place.
     fn decode(&self, _at: &[f64], _values: &mut crate::integrate::Sums) {}
+
+    /// What the values themselves leave open where they are parameters of a fit: how far the fits are from what they were
+    /// fitted to. Empty for tables of exact values.
+    fn residuals(&self, _table: &Table) -> Vec<Residual> {
+        Vec::new()
+    }
 }
 
 /// Why a texel has no value. The driver adds where.

@@ -28,6 +28,7 @@ pub mod single;
 pub mod skin;
 pub mod skin_specular;
 pub mod smith;
+pub mod sphere_light;
 pub mod student_t;
 pub mod thin_film;
 pub mod vcavity;

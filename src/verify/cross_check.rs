@@ -94,15 +94,16 @@ fn parts(channel: &str) -> Option<(bool, bool, bool)> {
 fn functional(channel: &str) -> Option<Functional> {
     match channel {
         "dfg.scale" => Some(Functional::SchlickComplement),
-        "dfg.bias" | "dfg.fc" => Some(Functional::Schlick),
+        "dfg.bias" | "dfg.fc" | "ltc.fresnel" => Some(Functional::Schlick),
         "dfg.f82" => Some(Functional::F82),
-        "dfg.total" | "dfg.loss" => Some(Functional::One),
+        "dfg.total" | "dfg.loss" | "ltc.magnitude" => Some(Functional::One),
         _ => None,
     }
 }
 
 fn check(case: &Case<'_>) -> Outcome {
-    let white = case.bound.spec.kind.id == "dfg";
+    let splits = case.bound.spec.model.as_ref().is_some_and(|(info, _)| info.splits);
+    let white = splits && ["dfg", "ltc-magnitude"].contains(&case.bound.spec.kind.id);
     let Ok(sweep) = Sweep::new(&case.bound.spec, white) else { return Outcome::vacuous("no model") };
     let mut outcome = Outcome::start();
     for (i, texel) in seeds::texels(case.table, TEXELS, 0xc705).into_iter().enumerate() {

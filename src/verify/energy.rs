@@ -33,7 +33,7 @@ pub(super) fn white(case: &Case<'_>, texel: usize) -> Option<(f64, f64)> {
     if let Some(i) = position("dfg.loss") {
         return Some((1.0 - values[i], errors[i]));
     }
-    let i = ["dfg.total", "e", "e-avg"].into_iter().find_map(position)?;
+    let i = ["dfg.total", "e", "e-avg", "ltc.magnitude"].into_iter().find_map(position)?;
     Some((values[i], errors[i]))
 }
 

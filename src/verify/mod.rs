@@ -9,6 +9,7 @@ pub mod cross_check;
 pub mod energy;
 pub mod finding;
 pub mod finite;
+pub mod lobe;
 pub mod monotone;
 pub mod normalised;
 pub mod range;
@@ -36,6 +37,7 @@ pub static LAWS: &[&Law] = &[
     &normalised::LAW,
     &total::LAW,
     &reversible::LAW,
+    &lobe::LAW,
     &cross_check::LAW,
     &complement::LAW,
     &reciprocity::LAW,

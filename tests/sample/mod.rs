@@ -60,6 +60,7 @@ pub(crate) fn provenance(table: &Table, storage: Storage) -> Provenance {
             largest_error: quantise_table(table, storage).map_or(0.0, |q| q.largest_error.value),
             fill: Vec::new(),
         }),
+        residuals: Vec::new(),
         reconstruction: None,
         laws: vec![LawRecord {
             law: "energy".to_owned(),

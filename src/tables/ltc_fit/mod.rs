@@ -17,6 +17,8 @@ use super::TexelError;
 use crate::integrate::View;
 use crate::models::Brdf;
 use crate::terms::ltc::Inverse;
+use newton::Optimum;
+use objective::Slices;
 use target::Target;
 
 /// Which matrices are searched.
@@ -68,58 +70,129 @@ pub struct Fit {
     pub albedo: f64,
 }
 
+impl Fit {
+    /// Where nothing is reflected there is nothing to be far from.
+    fn dark(inverse: Inverse) -> Fit {
+        Fit { inverse, l3: 0.0, variation: 0.0, albedo: 0.0 }
+    }
+}
+
 /// A fit with estimated numerical errors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fitted {
     /// At the finest level.
     pub fit: Fit,
-    /// At the level before: the difference is the error estimate.
-    pub coarse: Fit,
+    /// Estimated errors: those of the entries are one number, the largest.
+    pub error: FitError,
     /// Evaluations of model and lobe.
     pub evaluations: u32,
 }
 
-/// Levels of the charts.
-const LEVELS: [f64; 6] = [5.6, 8.0, 11.0, 15.0, 20.0, 27.0];
+/// Estimated numerical errors of a [`Fit`]: how well the best matrix is known, not how good it is.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FitError {
+    /// Of the entries of the inverse matrix over its middle one.
+    pub entries: f64,
+    /// Of [`Fit::l3`].
+    pub l3: f64,
+    /// Of [`Fit::variation`].
+    pub variation: f64,
+    /// Of [`Fit::albedo`].
+    pub albedo: f64,
+}
 
-/// Fits the model at a view, until the entries of the matrix over its middle one are good to `tolerance`.
+/// Levels of the charts.
+const LEVELS: [f64; 9] = [4.0, 5.6, 8.0, 11.0, 15.0, 20.0, 27.0, 38.0, 54.0];
+
+/// Relative error below which Newton's method is needed in full at every level.
+const NEARLY_PERFECT: f64 = 1e-3;
+
+/// Fits the model at a view, with ever finer nodes until `done` is content with the errors or the levels end.
 ///
 /// A surface that reflects nothing at this view gets the clamped cosine and no error: nothing is multiplied by it.
 ///
 /// # Errors
 /// [`TexelError::NoWidth`] for a mirror, [`TexelError::NotFinite`] where the model is not.
-pub fn fit(model: &dyn Brdf, view: View, family: Family, tolerance: f64) -> Result<Fitted, TexelError> {
+pub fn fit(
+    model: &dyn Brdf,
+    view: View,
+    family: Family,
+    done: impl Fn(&Fitted) -> bool,
+) -> Result<Fitted, TexelError> {
     // along the normal every lobe of an isotropic surface is round
     let round = view.sine().abs() == 0.0 && !model.turns();
     let family = if round { Family::Round } else { family };
-    let mut nodes = Vec::new();
+    let mut nodes = Slices::default();
     let mut evaluations = 0u32;
-    let mut last: Option<Fit> = None;
-    let mut result = None;
+    let mut fits: Vec<Fit> = Vec::new();
+    let mut last: Option<(Optimum, f64)> = None;
     for level in LEVELS {
         let target = Target::new(model, view, level)?;
-        if target.albedo <= f64::MIN_POSITIVE {
-            let dark = Fit { inverse: Inverse::COSINE, l3: 0.0, variation: 0.0, albedo: 0.0 };
-            return Ok(Fitted { fit: dark, coarse: dark, evaluations });
+        if target.is_dark() {
+            return Ok(Fitted { fit: Fit::dark(Inverse::COSINE), error: FitError::default(), evaluations });
         }
-        let start = last.map_or_else(|| family.nearest(&target.moments()), |f| f.inverse);
-        target.nodes_for(&start, &mut nodes);
-        let optimum = newton::minimise(&nodes, start, family);
-        evaluations = evaluations.saturating_add(optimum.evaluations);
+        let found = search(&target, family, last.as_ref(), &mut nodes);
+        evaluations = evaluations.saturating_add(found.evaluations);
         let fit = Fit {
-            inverse: optimum.inverse,
-            l3: libm::cbrt(optimum.value / target.cube),
-            variation: objective::variation(&nodes, &optimum.inverse),
+            inverse: found.inverse,
+            l3: libm::cbrt(found.at.value / target.cube),
+            variation: objective::variation(&target.nodes, &found.inverse),
             albedo: target.albedo,
         };
-        let coarse = last.unwrap_or(fit);
-        result = Some(Fitted { fit, coarse, evaluations });
-        if last.is_some() && difference(&fit.inverse, &coarse.inverse) <= tolerance {
+        fits.push(fit);
+        last = Some((Optimum { evaluations: 0, ..found }, fit.l3));
+        if fits.len() > 2 && done(&Fitted { fit, error: error(&fits), evaluations }) {
             break;
         }
-        last = Some(fit);
     }
-    result.ok_or(TexelError::NoWidth)
+    let fit = fits.last().copied().ok_or(TexelError::NoWidth)?;
+    if !(fit.l3 + fit.variation + difference(&fit, &fit).entries).is_finite() {
+        return Err(TexelError::NotFinite { channel: 0, value: fit.l3 });
+    }
+    Ok(Fitted { fit, error: error(&fits), evaluations })
+}
+
+/// The best matrix on the nodes of a level, from that of the level before (with its error) or from the moments.
+fn search(target: &Target<'_>, family: Family, last: Option<&(Optimum, f64)>, nodes: &mut Slices) -> Optimum {
+    let Some((last, l3)) = last else {
+        let start = family.nearest(&target.moments());
+        target.nodes_for(&start, nodes);
+        return newton::minimise(nodes, start, family);
+    };
+    target.nodes_for(&last.inverse, nodes);
+    // the Hessian of a nearly perfect fit vanishes with its error, and is that of no other nodes
+    if *l3 > NEARLY_PERFECT {
+        newton::refine(nodes, last, family)
+    } else {
+        newton::minimise(nodes, last.inverse, family)
+    }
+}
+
+/// The error of the last fit from the last three: the kinks of `|r|^3` are met at random, so two levels may agree by chance.
+///
+/// Twice the last difference or the one before, whichever is more. Measured on GGX, 484 texels, against fits good to 3e-5: the
+/// error of the entries is below it for 97 % of texels at 2.4e-4 and 1e-3, and for all but one at 1e-2; at most 10 times above.
+fn error(fits: &[Fit]) -> FitError {
+    let [.., first, second, last] = fits else { return FitError::default() };
+    let (before, now) = (difference(first, second), difference(second, last));
+    let worse = |a: f64, b: f64| a.max(2.0 * b);
+    FitError {
+        entries: worse(before.entries, now.entries),
+        l3: worse(before.l3, now.l3),
+        variation: worse(before.variation, now.variation),
+        albedo: worse(before.albedo, now.albedo),
+    }
+}
+
+fn difference(a: &Fit, b: &Fit) -> FitError {
+    let (p, q) = (&a.inverse, &b.inverse);
+    let entries = [p.m11 - q.m11, p.m13 - q.m13, p.m31 - q.m31, p.m33 - q.m33];
+    FitError {
+        entries: entries.iter().fold(0.0, |m, d| if d.is_nan() { *d } else { m.max(d.abs()) }),
+        l3: (a.l3 - b.l3).abs(),
+        variation: (a.variation - b.variation).abs(),
+        albedo: (a.albedo - b.albedo).abs(),
+    }
 }
 
 /// The errors of a given matrix at a view, at a level of the charts (8 is good to about 1e-4 of them).
@@ -128,18 +201,16 @@ pub fn fit(model: &dyn Brdf, view: View, family: Family, tolerance: f64) -> Resu
 /// As [`fit`].
 pub fn judge(model: &dyn Brdf, view: View, inverse: &Inverse, level: f64) -> Result<Fit, TexelError> {
     let target = Target::new(model, view, level)?;
-    let mut nodes = Vec::new();
+    if target.is_dark() {
+        return Ok(Fit::dark(*inverse));
+    }
+    let mut nodes = Slices::default();
     target.nodes_for(inverse, &mut nodes);
     let at = objective::objective(&nodes, inverse);
     Ok(Fit {
         inverse: *inverse,
         l3: libm::cbrt(at.value / target.cube),
-        variation: objective::variation(&nodes, inverse),
+        variation: objective::variation(&target.nodes, inverse),
         albedo: target.albedo,
     })
-}
-
-/// Largest difference of the entries.
-fn difference(a: &Inverse, b: &Inverse) -> f64 {
-    [a.m11 - b.m11, a.m13 - b.m13, a.m31 - b.m31, a.m33 - b.m33].iter().fold(0.0, |m, d| f64::max(m, d.abs()))
 }

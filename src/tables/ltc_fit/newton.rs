@@ -4,8 +4,7 @@
 //! there, so a step is relative to the lobe's own widths. The sets of matrices of every [`Family`] are closed under their steps.
 
 use super::Family;
-use super::objective::{N, Objective, objective};
-use super::target::Node;
+use super::objective::{N, Objective, Slices, gradient, objective};
 use crate::terms::ltc::Inverse;
 
 /// Most evaluations of the objective.
@@ -14,17 +13,25 @@ const EVALUATIONS: usize = 60;
 /// Longest step in a parameter.
 const LONGEST: f64 = 0.4;
 
-/// Steps shorter than this end the search; the next one would be its square.
-const SHORTEST: f64 = 1e-7;
+/// The search ends where the next step is expected to be shorter than this.
+const SHORTEST: f64 = 1e-8;
 
 /// Damping relative to the diagonal: at the start, and where the search gives up.
-const DAMPING: [f64; 2] = [1e-3, 1e10];
+const DAMPING: [f64; 2] = [1e-6, 1e10];
+
+/// [`refine`] gives up if its first step is longer than this, or after this many.
+const NEARBY: f64 = 0.03;
+const STEPS: usize = 4;
+
+/// [`refine`] ends where the next step is expected to be shorter than this.
+const ENOUGH: f64 = 1e-6;
 
 /// The end of a search.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Optimum {
     pub(super) inverse: Inverse,
-    pub(super) value: f64,
+    /// At the last matrix but for the last step.
+    pub(super) at: Objective,
     pub(super) evaluations: u32,
 }
 
@@ -42,11 +49,12 @@ pub(super) fn step(b: &Inverse, d: [f64; N]) -> Inverse {
 }
 
 /// The nearest local minimum below `start`.
-pub(super) fn minimise(nodes: &[Node], start: Inverse, family: Family) -> Optimum {
+pub(super) fn minimise(nodes: &Slices, start: Inverse, family: Family) -> Optimum {
     let mut inverse = start.scaled(1.0 / start.m22);
     let mut here = objective(nodes, &inverse);
     let mut damping = DAMPING[0];
     let mut evaluations = 1;
+    let mut before = 0.0;
     while evaluations < EVALUATIONS && damping < DAMPING[1] {
         let Some(d) = direction(&here, family, damping) else {
             damping *= 10.0;
@@ -60,9 +68,11 @@ pub(super) fn minimise(nodes: &[Node], start: Inverse, family: Family) -> Optimu
         if next.minor() > 0.0 && next.m22 > 0.0 && there.value <= here.value {
             (inverse, here) = (next, there);
             damping *= 0.1;
-            if length < SHORTEST {
+            // near the minimum each step is the square of the one before, or half of it if the fit is perfect
+            if length * (length / before).min(1.0) < SHORTEST {
                 break;
             }
+            before = length;
         } else {
             if length < SHORTEST {
                 break;
@@ -71,20 +81,43 @@ pub(super) fn minimise(nodes: &[Node], start: Inverse, family: Family) -> Optimu
         }
     }
     let evaluations = u32::try_from(evaluations * nodes.len()).unwrap_or(u32::MAX);
-    Optimum { inverse, value: here.value, evaluations }
+    Optimum { inverse, at: here, evaluations }
+}
+
+/// The minimum again, on other nodes: a few steps with the Hessian that is known, or a new search if they do not converge.
+///
+/// The Hessians of two levels differ by their quadrature errors, a percent or so, so each step leaves that part of the
+/// distance.
+pub(super) fn refine(nodes: &Slices, last: &Optimum, family: Family) -> Optimum {
+    let mut optimum = *last;
+    let mut before = NEARBY;
+    for _ in 0..STEPS {
+        (optimum.at.value, optimum.at.gradient) = gradient(nodes, &optimum.inverse);
+        let Some(d) = direction(&optimum.at, family, 0.0) else { break };
+        let length = d.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        if length.is_nan() || length >= before {
+            break;
+        }
+        optimum.inverse = step(&optimum.inverse, d);
+        optimum.evaluations += u32::try_from(nodes.len()).unwrap_or(u32::MAX);
+        if length * (length / before) < ENOUGH {
+            return optimum;
+        }
+        before = 0.5 * length;
+    }
+    minimise(nodes, last.inverse, family)
 }
 
 /// The damped Newton step, no longer than [`LONGEST`]; `None` if the damped Hessian is not positive.
 fn direction(at: &Objective, family: Family, damping: f64) -> Option<[f64; N]> {
     let basis = family.basis();
     let k = basis.len();
+    let dot = |u: &[f64; N], v: &[f64; N]| -> f64 { u.iter().zip(v).map(|(a, b)| a * b).sum() };
     let (mut h, mut g) = ([[0.0; N]; N], [0.0; N]);
     for (i, u) in basis.iter().enumerate() {
-        for a in 0..N {
-            g[i] -= u[a] * at.gradient[a];
-            for (j, v) in basis.iter().enumerate() {
-                h[i][j] += (0..N).map(|b| u[a] * at.hessian[a][b] * v[b]).sum::<f64>();
-            }
+        g[i] = -dot(u, &at.gradient);
+        for (j, v) in basis.iter().enumerate() {
+            h[i][j] = dot(u, &at.hessian.map(|row| dot(&row, v)));
         }
     }
     for (i, row) in h.iter_mut().enumerate().take(k) {
@@ -108,10 +141,8 @@ fn direction(at: &Objective, family: Family, damping: f64) -> Option<[f64; N]> {
 fn solve(h: &mut [[f64; N]; N], mut x: [f64; N], k: usize) -> Option<[f64; N]> {
     for i in 0..k {
         for j in 0..=i {
-            let mut sum = h[i][j];
-            for m in 0..j {
-                sum -= h[i][m] * h[j][m];
-            }
+            let known: f64 = h[i][..j].iter().zip(&h[j][..j]).map(|(a, b)| a * b).sum();
+            let sum = h[i][j] - known;
             if i == j {
                 if sum <= 0.0 || sum.is_nan() {
                     return None;

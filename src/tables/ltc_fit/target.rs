@@ -1,6 +1,7 @@
 //! What a transformed cosine is fitted to: the lobe `f mu_i / E` at the nodes of the model's own chart.
 
 use super::super::TexelError;
+use super::objective::Slices;
 use super::proposal;
 use crate::integrate::{BATCH, Chart, Nodes, View};
 use crate::models::Brdf;
@@ -15,8 +16,11 @@ pub(super) struct Node {
     pub(super) weight: f64,
 }
 
-/// Factor on the lobe's density where nodes are shared: where both agree, the chart has 8 parts in 9.
-const FAVOUR: f64 = 0.5;
+/// Factor on the cube of the lobe's density where nodes are shared: where both agree, the chart has 8 parts in 9.
+const FAVOUR: f64 = 0.125;
+
+/// Nodes that hold less than this of the integral of the cube are left out: the tails.
+const NEGLIGIBLE: f64 = 1e-13;
 
 /// A normalised lobe on nodes that cover the hemisphere.
 pub(super) struct Target<'a> {
@@ -101,18 +105,25 @@ impl<'a> Target<'a> {
     ///
     /// Nodes of the model's chart and of the lobe's own share the upper hemisphere in the ratio of the cubes of the two
     /// densities: where one has a peak that the other's nodes may step over, its own nodes count.
-    pub(super) fn nodes_for(&self, proposal: &Inverse, out: &mut Vec<Node>) {
+    pub(super) fn nodes_for(&self, proposal: &Inverse, out: &mut Slices) {
         let (mut above, mut below) = (Vec::new(), Vec::new());
         proposal::nodes(proposal, self.level, &mut above, &mut below);
         self.evaluate(&mut above);
-        let share = |n: &Node| {
-            let (t, d) = (cube(n.lobe), cube(FAVOUR * proposal.density(n.w)));
-            if t + d > 0.0 { t / (t + d) } else { 1.0 }
-        };
         out.clear();
-        out.extend(self.nodes.iter().map(|n| Node { weight: n.weight * share(n), ..*n }));
-        out.extend(above.iter().map(|n| Node { weight: n.weight * (1.0 - share(n)), ..*n }));
-        out.append(&mut below);
+        let least = NEGLIGIBLE * self.cube;
+        let mut add = |node: &Node, is_chart: bool| {
+            let (t, d) = (cube(node.lobe), cube(proposal.density(node.w)));
+            let shared = t + FAVOUR * d;
+            let chart = if shared > 0.0 { t / shared } else { 1.0 };
+            let weight = node.weight * if is_chart { chart } else { 1.0 - chart };
+            if weight * (t + d) > least {
+                out.push(&Node { weight, ..*node });
+            }
+        };
+        self.nodes.iter().for_each(|n| add(n, true));
+        above.iter().for_each(|n| add(n, false));
+        below.iter().for_each(|n| add(n, false));
+        out.pad();
     }
 
     /// Sets the lobe at nodes above the horizon.
@@ -132,6 +143,11 @@ impl<'a> Target<'a> {
                 }
             }
         }
+    }
+
+    /// True if the surface reflects nothing at this view.
+    pub(super) fn is_dark(&self) -> bool {
+        self.albedo <= f64::MIN_POSITIVE
     }
 
     /// A lobe with the mean direction and the widths of the square of the target.
