@@ -4,21 +4,31 @@
 
 pub mod albedo;
 pub mod average_albedo;
+pub mod beer_lambert;
+pub mod blackbody;
 pub mod dfg;
 pub mod diffusion_kernel;
 pub mod diffusion_profile;
 pub mod diffusion_sampling;
 pub mod driver;
+pub mod fresnel_conductor;
 pub mod fresnel_dielectric;
+pub mod fresnel_schlick;
 pub mod gaussian_fit;
 pub mod integral;
 pub mod kelemen_beckmann;
+pub mod masking;
 pub mod ndf;
+pub mod phase_function;
+pub mod phase_sampling;
 pub mod preintegrated_skin;
 pub mod profile;
 pub mod skin_transmittance;
 pub mod spec;
+pub mod spectrum;
 pub mod sweep;
+pub mod thin_film;
+pub mod visibility;
 
 use crate::cite::Cite;
 use crate::grid::{Axis, Channel, table::named};
@@ -32,7 +42,12 @@ pub static TABLES: &[&TableInfo] = &[
     &albedo::INFO,
     &average_albedo::INFO,
     &fresnel_dielectric::INFO,
+    &fresnel_conductor::INFO,
+    &fresnel_schlick::INFO,
+    &thin_film::INFO,
     &ndf::INFO,
+    &masking::INFO,
+    &visibility::INFO,
     &kelemen_beckmann::INFO,
     &preintegrated_skin::INFO,
     &diffusion_profile::INFO,
@@ -40,6 +55,10 @@ pub static TABLES: &[&TableInfo] = &[
     &diffusion_sampling::INFO,
     &gaussian_fit::INFO,
     &skin_transmittance::INFO,
+    &phase_function::INFO,
+    &phase_sampling::INFO,
+    &beer_lambert::INFO,
+    &blackbody::INFO,
 ];
 
 /// A table kind bound to a model, parameters and axes: computes one texel. Pure: no threads, no clamps, no output.

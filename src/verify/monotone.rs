@@ -19,6 +19,11 @@ const PROMISES: &[(&str, &str, &str, &[f64])] = &[
     ("diffusion-kernel", "line", "offset", &[-1.0, -1.0, -1.0]),
     ("diffusion-sampling", "", "u", &[1.0, 1.0, 1.0]),
     ("skin-transmittance", "", "thickness", &[-1.0, -1.0, -1.0]),
+    ("beer-lambert", "transmitted", "path", &[-1.0, -1.0, -1.0]),
+    ("beer-lambert", "lost", "path", &[1.0, 1.0, 1.0]),
+    ("phase-sampling", "cosine", "u", &[1.0]),
+    ("phase-sampling", "angle", "u", &[-1.0]),
+    ("masking", "", "mu", &[1.0]),
 ];
 
 fn check(case: &Case<'_>) -> Outcome {

@@ -4,6 +4,7 @@
 
 use super::{Case, Law, Outcome};
 use crate::integrate::{Sums, line};
+use crate::tables::phase_function::Phase;
 use crate::tables::profile::Profile;
 use crate::tables::{Baker, diffusion_profile};
 use std::f64::consts::PI;
@@ -29,6 +30,7 @@ fn check(case: &Case<'_>) -> Outcome {
         "diffusion-profile" => radial(case),
         "diffusion-kernel" => kernel(case),
         "gaussian-fit" => weights(case),
+        "phase-function" => sphere(case),
         _ => Outcome::vacuous("nothing to add up"),
     }
 }
@@ -86,6 +88,32 @@ fn kernel(case: &Case<'_>) -> Outcome {
     let sum = add_up(&*case.bound.baker, &outwards(&profile), 3, case.tolerance, |x| (vec![x], 2.0));
     let mut outcome = Outcome::start();
     tighten(&mut outcome, &sum, 0..3, 1.0, || "all offsets".to_owned());
+    outcome
+}
+
+/// `2 pi int p sin theta dtheta = 1`, of the density also where the table holds it relative to its peak.
+fn sphere(case: &Case<'_>) -> Outcome {
+    let spec = &case.bound.spec;
+    let axis = spec.axis("g");
+    let values: Vec<Option<f64>> = axis.map_or(vec![None], |i| rows(case, i).into_iter().map(Some).collect());
+    let mut outcome = Outcome::start();
+    for g in values {
+        let phase = Phase::new(&spec.params, g);
+        let peak = if spec.layout.id == "relative" { phase.largest() } else { 1.0 };
+        let deflection = spec.axis("deflection").unwrap_or(0);
+        // peaks are as narrow as 1 - |g|, on either side
+        let near = [0.0, 1e-4, 1e-3, 1e-2, 0.1, 0.5];
+        let breaks: Vec<f64> = near.into_iter().chain([PI / 2.0]).chain(near.into_iter().rev().map(|x| PI - x)).collect();
+        let sum = add_up(&*case.bound.baker, &breaks, 1, 1e-10, |theta| {
+            let mut at = vec![0.0; spec.grid.axes().len()];
+            if let (Some(i), Some(g)) = (axis, g) {
+                at[i] = g;
+            }
+            at[deflection] = theta;
+            (at, 2.0 * PI * libm::sin(theta) * peak)
+        });
+        tighten(&mut outcome, &sum, 0..1, 1.0, || g.map_or("all angles".to_owned(), |g| format!("g = {g}")));
+    }
     outcome
 }
 
