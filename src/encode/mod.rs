@@ -45,6 +45,7 @@ pub mod diff_files;
 pub mod diff_json;
 pub mod exr;
 mod exr_read;
+pub mod merl;
 pub mod png;
 mod png_read;
 pub mod read;
@@ -65,6 +66,10 @@ pub trait Encoder: Debug + Send + Sync {
     fn extension(&self) -> &'static str;
     /// What it can store.
     fn storages(&self) -> &'static [Storage];
+    /// Can it hold a table on this grid? Most containers take any.
+    fn holds(&self, _grid: &Grid) -> bool {
+        true
+    }
     /// Makes the bytes of the file. The same input gives the same bytes.
     ///
     /// # Errors
@@ -73,7 +78,7 @@ pub trait Encoder: Debug + Send + Sync {
 }
 
 /// Every container.
-pub static ENCODERS: &[&dyn Encoder] = &[&exr::Exr, &png::Png];
+pub static ENCODERS: &[&dyn Encoder] = &[&exr::Exr, &png::Png, &merl::Merl];
 
 /// Looks a container up by its id.
 #[must_use]
@@ -143,6 +148,14 @@ pub enum EncodeError {
         texels: usize,
         /// Number of channels.
         channels: usize,
+    },
+    /// Axes that the container has no words for.
+    #[error("{format} cannot hold these axes; {fault}")]
+    Axes {
+        /// Container id.
+        format: &'static str,
+        /// What it takes.
+        fault: &'static str,
     },
     /// More rows or columns than the container can count.
     #[error("{format} cannot hold {width} x {height} pixels; each side is at most {limit}")]

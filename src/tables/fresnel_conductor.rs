@@ -89,17 +89,20 @@ struct Table {
     index: [f64; 2],
     metal: Option<&'static Metal>,
     layout: &'static str,
-    spectrum: &'static Spectrum,
+    /// Of layout srgb, split at the rows of the metal.
+    spectrum: Option<Spectrum>,
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
+    let metal = metals::find(spec.params.choice("metal"));
+    let rows = metal.into_iter().flat_map(|m| m.rows).map(|row| row[0]);
     Ok(Box::new(Table {
         mu: spec.coordinate("mu")?,
         axes: [spec.axis("n"), spec.axis("k")],
         index: [spec.params.number("n"), spec.params.number("k")],
-        metal: metals::find(spec.params.choice("metal")),
+        metal,
         layout: spec.layout.id,
-        spectrum: spectrum::daylight(),
+        spectrum: (spec.layout.id == "srgb").then(|| spectrum::daylight_with(rows)),
     }))
 }
 
@@ -113,11 +116,9 @@ impl Table {
 
 impl Baker for Table {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
-        if self.layout == "srgb" {
-            return super::finite(
-                self.spectrum.colour(tolerance, &mut |lambda| self.reflectance(at, lambda).unpolarised()),
-                3,
-            );
+        if let Some(spectrum) = &self.spectrum {
+            let f = &mut |lambda| self.reflectance(at, lambda).unpolarised();
+            return super::finite(spectrum.colour(tolerance, f), 3);
         }
         let mut value = [0.0; MAX_CHANNELS];
         for (c, lambda) in metals::RGB_NM.into_iter().enumerate() {
@@ -132,6 +133,6 @@ impl Baker for Table {
     }
 
     fn rule(&self) -> String {
-        if self.layout == "srgb" { spectrum::RULE } else { "closed form" }.to_owned()
+        if self.spectrum.is_some() { spectrum::RULE } else { "closed form" }.to_owned()
     }
 }

@@ -15,9 +15,11 @@ pub mod fresnel_conductor;
 pub mod fresnel_dielectric;
 pub mod fresnel_schlick;
 pub mod gaussian_fit;
+pub mod importance;
 pub mod integral;
 pub mod kelemen_beckmann;
 pub mod masking;
+pub mod merl;
 pub mod ndf;
 pub mod phase_function;
 pub mod phase_sampling;
@@ -59,6 +61,8 @@ pub static TABLES: &[&TableInfo] = &[
     &phase_sampling::INFO,
     &beer_lambert::INFO,
     &blackbody::INFO,
+    &importance::INFO,
+    &merl::INFO,
 ];
 
 /// A table kind bound to a model, parameters and axes: computes one texel. Pure: no threads, no clamps, no output.

@@ -60,8 +60,9 @@ impl Baker for Table {
         let mut value = [0.0; MAX_CHANNELS];
         value[0] = if self.angle { libm::acos(cos) } else { cos };
         let mut e = Estimate::exact(value);
-        // the inverse holds 1e-14 of the cosine, which near 0 or pi is more of the angle
-        e.error[0] = if self.angle { 1e-14 / libm::sin(value[0]).max(1e-7) } else { 1e-14 };
+        // roots are found to the rounding of the distribution; of the cosine, which near 0 or pi is more of the angle
+        let error = if self.params.choice("phase") == "fog" { 1e-12 } else { 1e-14 };
+        e.error[0] = if self.angle { error / libm::sin(value[0]).max(1e-7) } else { error };
         super::finite(e, 1)
     }
 

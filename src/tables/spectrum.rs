@@ -30,10 +30,14 @@ pub struct Spectrum {
 /// Source: [CIE11664-2](crate::cite::CIE_11664_2) Table B.1 in steps of 10 nm, [Wyman2013](crate::cite::WYMAN_2013) Eq. 4.
 pub fn daylight() -> &'static Spectrum {
     static MADE: OnceLock<Spectrum> = OnceLock::new();
-    MADE.get_or_init(|| {
-        let tens = (36..=83).map(|i| 10.0 * f64::from(i));
-        Spectrum::new(tens.chain(WYMAN_BREAKS).collect(), &|lambda| metals::d65(lambda), true)
-    })
+    MADE.get_or_init(|| daylight_with([]))
+}
+
+/// [`daylight`] for reflectances that have kinks of their own, at wavelengths in nm.
+pub fn daylight_with(kinks: impl IntoIterator<Item = f64>) -> Spectrum {
+    let tens = (36..=83).map(|i| 10.0 * f64::from(i));
+    let inside = kinks.into_iter().filter(|k| (360.0..830.0).contains(k));
+    Spectrum::new(tens.chain(WYMAN_BREAKS).chain(inside).collect(), &|lambda| metals::d65(lambda), true)
 }
 
 /// Unit light, not divided by its white: for sources that bring their own spectrum.
@@ -79,7 +83,8 @@ impl Spectrum {
 
     /// Red, green and blue of a spectrum, each to `tolerance` (absolute), in the first three channels.
     ///
-    /// The error is the difference of the last two orders: a few times too large, as it is that of the lower one.
+    /// The error is twice the difference of the last two orders, with a part of that of the other channels, so that one
+    /// that agrees by chance does not pass.
     pub fn colour(&self, tolerance: f64, f: &mut dyn FnMut(f64) -> f64) -> Estimate {
         let mut e = Estimate { value: [0.0; MAX_CHANNELS], error: [f64::INFINITY; MAX_CHANNELS], evaluations: 0 };
         let mut before = sums(&self.levels[0], f);
@@ -87,8 +92,10 @@ impl Spectrum {
         for level in &self.levels[1..] {
             let now = sums(level, f);
             count += level.len();
+            let apart = [0, 1, 2].map(|c| (now[c] - before[c]).abs());
+            let shared = 0.2 * apart.iter().sum::<f64>();
             for c in 0..3 {
-                e.error[c] = (now[c] - before[c]).abs() + 1e-14 * (1.0 + now[c].abs());
+                e.error[c] = 2.0 * apart[c] + shared + 1e-14 * (1.0 + now[c].abs());
                 e.value[c] = now[c];
             }
             before = now;

@@ -183,6 +183,10 @@ pub fn sample_fog(diameter_um: f64, u: glam::DVec2) -> f64 {
 /// [−1, 1]; rises with u. Accuracy: 1e-13 absolute in the distribution (`tests/tables_skin.rs`).
 #[must_use]
 pub fn fog_quantile(diameter_um: f64, u: f64) -> f64 {
+    // at the ends the root would be known to the rounding of the distribution only
+    if u <= 0.0 || u >= 1.0 {
+        return if u <= 0.0 { -1.0 } else { 1.0 };
+    }
     let f = Fog::new(diameter_um);
     let draine_norm = 1.0 / (1.0 + f.alpha * (1.0 + 2.0 * f.g_draine * f.g_draine) / 3.0);
     let t = crate::math::root::solve(-1.0, 1.0, |t| {

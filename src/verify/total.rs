@@ -2,11 +2,13 @@
 //!
 //! The sums are taken over fresh values at the nodes of another rule, in another variable than the baker's.
 
-use super::{Case, Law, Outcome};
+use super::{Case, Law, Outcome, seeds};
 use crate::integrate::{Sums, line};
 use crate::tables::phase_function::Phase;
 use crate::tables::profile::Profile;
-use crate::tables::{Baker, diffusion_profile};
+use crate::tables::integral::{Functional, integrate};
+use crate::tables::sweep::Sweep;
+use crate::tables::{Baker, diffusion_profile, importance, place};
 use std::f64::consts::PI;
 
 /// The law.
@@ -31,6 +33,7 @@ fn check(case: &Case<'_>) -> Outcome {
         "diffusion-kernel" => kernel(case),
         "gaussian-fit" => weights(case),
         "phase-function" => sphere(case),
+        "importance" => albedo(case),
         _ => Outcome::vacuous("nothing to add up"),
     }
 }
@@ -113,6 +116,23 @@ fn sphere(case: &Case<'_>) -> Outcome {
             (at, 2.0 * PI * libm::sin(theta) * peak)
         });
         tighten(&mut outcome, &sum, 0..1, 1.0, || g.map_or("all angles".to_owned(), |g| format!("g = {g}")));
+    }
+    outcome
+}
+
+/// What the marginal density adds up to is the directional albedo, by the model's own chart; at [`ROWS`] texels.
+fn albedo(case: &Case<'_>) -> Outcome {
+    let Ok(sweep) = Sweep::new(&case.bound.spec, false) else { return Outcome::vacuous("no model") };
+    let mut outcome = Outcome::start();
+    for texel in seeds::texels(case.table, ROWS, 0x1a9b) {
+        let point = case.table.grid.texel(texel);
+        let Ok(model) = sweep.model(point.values()) else { continue };
+        let view = sweep.view(point.values());
+        let marginal = importance::marginal(&*model, view, 1e-5);
+        let Ok(chart) = integrate(&*model, view, &[Functional::One], 1e-5) else { continue };
+        let (a, b) = (marginal.total, chart.value[0]);
+        let error = marginal.error + chart.error[0] + ROUNDING;
+        outcome.tighten(error - (a - b).abs(), || format!("{a:.9} against {b:.9}, {}", place(&case.table.grid, texel)));
     }
     outcome
 }
