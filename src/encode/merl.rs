@@ -42,7 +42,8 @@ impl Encoder for Merl {
                     Warp::Power(p) => p,
                     _ => f64::NAN,
                 };
-                let whole = axis.domain == axis.quantity.domain && axis.clamp.is_none();
+                let ends = axis.domain.iter().zip(axis.quantity.domain);
+                let whole = ends.fold(0.0, |d, (a, b)| d + (a - b).abs()) == 0.0 && axis.clamp.is_none();
                 let plain = axis.offset.abs() == 0.0 && axis.value(0, 0.0) < axis.value(1, 0.0);
                 axis.quantity.id == id
                     && axis.len == len

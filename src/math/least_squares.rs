@@ -13,7 +13,8 @@ pub fn nonnegative(gram: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
     for _ in 0..3 * n + 3 {
         let slope = |i: usize| b[i] - gram[i].iter().zip(&w).map(|(g, w)| g * w).sum::<f64>();
         let floor = 1e-13 * b.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        let candidate = (0..n).filter(|&i| !free[i] && slope(i) > floor).max_by(|&i, &j| slope(i).total_cmp(&slope(j)));
+        let candidate =
+            (0..n).filter(|&i| !free[i] && slope(i) > floor).max_by(|&i, &j| slope(i).total_cmp(&slope(j)));
         let Some(enter) = candidate else { break };
         free[enter] = true;
         // back to the feasible set: shorten the step to where the first weight vanishes, and hold that one

@@ -6,7 +6,13 @@
 /// from the best point of the round before, with steps half as long. Ends a round after `steps` steps, or when the
 /// values at the corners agree to 1e-14. Deterministic. NaN counts as worse than everything.
 #[must_use]
-pub fn minimise(start: &[f64], step: f64, rounds: usize, steps: usize, f: &mut dyn FnMut(&[f64]) -> f64) -> Vec<f64> {
+pub fn minimise(
+    start: &[f64],
+    step: f64,
+    rounds: usize,
+    steps: usize,
+    f: &mut dyn FnMut(&[f64]) -> f64,
+) -> Vec<f64> {
     let mut best = start.to_vec();
     let mut step = step;
     for _ in 0..rounds {
@@ -36,9 +42,8 @@ fn round(start: &[f64], step: f64, steps: usize, f: &mut dyn FnMut(&[f64]) -> f6
         }
         let centre: Vec<f64> =
             (0..n).map(|i| corners[..n].iter().map(|c| c.1[i]).sum::<f64>() / n as f64).collect();
-        let along = |t: f64| -> Vec<f64> {
-            centre.iter().zip(&corners[n].1).map(|(c, w)| c + t * (w - c)).collect()
-        };
+        let along =
+            |t: f64| -> Vec<f64> { centre.iter().zip(&corners[n].1).map(|(c, w)| c + t * (w - c)).collect() };
         let reflected = along(-1.0);
         let r = value(&reflected);
         let next = if r < least {

@@ -146,6 +146,12 @@ pub enum Fault {
         /// Range of the channel.
         range: [f64; 2],
     },
+    /// A container that takes only certain axes, and a table with others.
+    #[error("{container} cannot hold the axes of this table")]
+    Axes {
+        /// Container id.
+        container: String,
+    },
     /// A waiver for a law that is not checked.
     #[error("table {kind} does not check law `{law}`")]
     IdleWaiver {
@@ -235,6 +241,9 @@ impl Fault {
                 "write { power = p }, { one-minus-power = p } or { coupled = \"alpha\", power = 2.0, scale = 1.0, exponent = 1.0 }"
             }
             Fault::WideRange { .. } => "store it as half or float, or take a layout with bounded channels",
+            Fault::Axes { .. } => {
+                "store it in another container, or take the axes that this one is made for: those of the table kind of its name"
+            }
             Fault::SweptRange { .. } => "give the axis a domain inside that range",
             Fault::SplitFresnel { .. } => "leave it out; the shader applies F0 and F90",
             Fault::Bind(e) => bind_remedy(e)?,

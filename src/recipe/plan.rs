@@ -6,6 +6,7 @@ use super::document::{Document, Entry};
 use super::fault::{Fault, Faults};
 use super::section::unknown_word;
 use super::{Format, Stored, TOLERANCE, formats, name};
+use crate::encode;
 use crate::grid::provenance::Waiver;
 use crate::tables::driver::OnMiss;
 use crate::tables::spec::Request;
@@ -252,6 +253,7 @@ fn table(entry: Entry, tolerance: Option<f64>, faults: &mut Faults) -> Option<Pl
     let waivers = kind.map(|kind| waivers(&entry, kind, faults));
     if let Some(bound) = &bound {
         check_storable(&entry, bound, &stored, faults);
+        check_grid(&entry, bound, faults);
     }
     if faults.len() > before {
         return None;
@@ -339,6 +341,17 @@ fn check_storable(entry: &Entry, bound: &Bound, stored: &[Option<&'static Stored
         let wide = |c: &&ChannelInfo| half_step(c).is_nan() || half_step(c) > TOLERANCE[1];
         if let Some(channel) = bound.spec.layout.channels.iter().find(wide) {
             let fault = Fault::WideRange { storage: stored.id, channel: channel.id, range: channel.range };
+            faults.value(format!("{}.outputs[{i}]", entry.path), fault);
+        }
+    }
+}
+
+/// A container that takes only certain grids must take this one.
+fn check_grid(entry: &Entry, bound: &Bound, faults: &mut Faults) {
+    for (i, output) in entry.outputs.iter().flatten().enumerate() {
+        let Some(Output { container, .. }) = output else { continue };
+        if encode::encoder(container).is_some_and(|e| !e.holds(&bound.spec.grid)) {
+            let fault = Fault::Axes { container: container.clone() };
             faults.value(format!("{}.outputs[{i}]", entry.path), fault);
         }
     }

@@ -63,7 +63,9 @@ impl Baker for Table {
         let end = self.profile.scales().last().copied().unwrap_or(0.0);
         for c in 0..3 {
             // each side of the median keeps its own digits
-            let miss = |r: f64| if u < 0.5 { self.profile.inside(r)[c] - u } else { (1.0 - u) - self.profile.outside(r)[c] };
+            let miss = |r: f64| {
+                if u < 0.5 { self.profile.inside(r)[c] - u } else { (1.0 - u) - self.profile.outside(r)[c] }
+            };
             let r = if u > 0.0 { solve(0.0, end, |r| (miss(r), self.profile.ring(r)[c])) } else { 0.0 };
             let left = miss(r).abs() / self.profile.ring(r)[c];
             e.value[c] = r;

@@ -88,7 +88,9 @@ impl Baker for Table {
         };
         let mu = at[self.mu];
         let f = match self.params.choice("variant") {
-            "generalised" => schlick::schlick_generalised(number("f0"), number("f90"), number("exponent"), mu),
+            "generalised" => {
+                schlick::schlick_generalised(number("f0"), number("f90"), number("exponent"), mu)
+            }
             "f82-tint" => schlick::f82_tint_unclamped(number("f0"), number("tint"), mu),
             "lazanyi" => lazanyi::lazanyi(number("n"), number("k"), number("a"), number("q"), mu),
             "dielectric" => dielectric(mu, number("eta")),

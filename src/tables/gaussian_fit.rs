@@ -152,7 +152,8 @@ pub fn fit(profile: &Profile, count: usize) -> Fit {
     let mut logs = best.map_or_else(|| vec![0.0; count], |b| b.1);
     logs.sort_by(f64::total_cmp);
     let (weights, residual) = problem.solve(&logs);
-    let lobes = logs.iter().enumerate().map(|(i, v)| (libm::exp(*v), [0, 1, 2].map(|c| weights[c][i]))).collect();
+    let lobes =
+        logs.iter().enumerate().map(|(i, v)| (libm::exp(*v), [0, 1, 2].map(|c| weights[c][i]))).collect();
     Fit { lobes, residual }
 }
 
@@ -172,7 +173,8 @@ fn radius(profile: &Profile, part: f64) -> f64 {
     for _ in 0..60 {
         let middle = (lo * hi).sqrt();
         let inside = profile.inside(middle);
-        let enough = if part < 0.5 { inside.iter().any(|f| *f > part) } else { inside.iter().all(|f| *f > part) };
+        let enough =
+            if part < 0.5 { inside.iter().any(|f| *f > part) } else { inside.iter().all(|f| *f > part) };
         if enough { hi = middle } else { lo = middle }
     }
     hi
@@ -217,7 +219,8 @@ impl Problem {
         let dot = |a: &[f64], b: &[f64]| -> f64 {
             a.iter().zip(b).zip(&self.weights).map(|((a, b), w)| a * b * w).sum()
         };
-        let gram: Vec<Vec<f64>> = columns.iter().map(|a| columns.iter().map(|b| dot(a, b)).collect()).collect();
+        let gram: Vec<Vec<f64>> =
+            columns.iter().map(|a| columns.iter().map(|b| dot(a, b)).collect()).collect();
         let mut residual = [0.0; 3];
         let weights = [0, 1, 2].map(|c| {
             let stiff = STIFF * self.norm[c];

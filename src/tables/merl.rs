@@ -80,7 +80,9 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
             return Err(refuse("is not reciprocal: f(wo, wi) and f(wi, wo) would share a texel"));
         }
         if model.turns() {
-            return Err(refuse("is anisotropic with these parameters: the table has no azimuth of the surface"));
+            return Err(refuse(
+                "is anisotropic with these parameters: the table has no azimuth of the surface",
+            ));
         }
         if model.mirror(1.0).is_some() {
             return Err(refuse("is a mirror: a delta has no value"));

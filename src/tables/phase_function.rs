@@ -14,7 +14,13 @@ pub(super) const PARAMS: &[Param] = &[
         "Henyey and Greenstein, Rayleigh, Draine, the fit of fog and cloud, or isotropic",
         &["henyey-greenstein", "rayleigh", "draine", "fog", "isotropic"],
     ),
-    Param::number("g", "g", "of henyey-greenstein and draine: asymmetry", [-0.999, 0.999], Preset::Value(0.75)),
+    Param::number(
+        "g",
+        "g",
+        "of henyey-greenstein and draine: asymmetry",
+        [-0.999, 0.999],
+        Preset::Value(0.75),
+    ),
     Param::number("draine_alpha", "alpha", "of draine: weight of cos^2", [0.0, 100.0], Preset::Value(1.0)),
     Param {
         unit: "um",
@@ -92,7 +98,8 @@ impl Phase {
         match self.id {
             "rayleigh" => phase::rayleigh(cos),
             "draine" => {
-                hg(self.g) * (1.0 + self.alpha * cos * cos) / (1.0 + self.alpha * (1.0 + 2.0 * self.g * self.g) / 3.0)
+                hg(self.g) * (1.0 + self.alpha * cos * cos)
+                    / (1.0 + self.alpha * (1.0 + 2.0 * self.g * self.g) / 3.0)
             }
             "fog" => phase::fog(self.diameter, cos),
             "isotropic" => phase::isotropic(),

@@ -55,8 +55,11 @@ pub static INFO: TableInfo = TableInfo {
     bind,
 };
 
-static PARAMS: [Param; 1 + profile::PARAMS.len()] =
-    profile::with(Param::choice("over", "what is blurred: a ring, as published, or the sphere", &["ring", "sphere"]));
+static PARAMS: [Param; 1 + profile::PARAMS.len()] = profile::with(Param::choice(
+    "over",
+    "what is blurred: a ring, as published, or the sphere",
+    &["ring", "sphere"],
+));
 
 fn default_axes() -> Vec<Axis> {
     let axis = |id: &str, domain| Quantity::find(id).map(|q| Axis::new(q, 128, Texel::Endpoint).over(domain));

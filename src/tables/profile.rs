@@ -156,10 +156,10 @@ impl Profile {
     #[must_use]
     pub fn at(&self, r: f64) -> Rgb {
         match self {
-            Profile::Gaussians { lobes, .. } => {
-                sum(lobes, |v| libm::exp(-0.5 * r * r / v) / (2.0 * PI * v))
+            Profile::Gaussians { lobes, .. } => sum(lobes, |v| libm::exp(-0.5 * r * r / v) / (2.0 * PI * v)),
+            Profile::Burley { scale, .. } => {
+                scale.map(|l| burley_at(r.max(1e-300 * l), l) / r.max(1e-300 * l))
             }
-            Profile::Burley { scale, .. } => scale.map(|l| burley_at(r.max(1e-300 * l), l) / r.max(1e-300 * l)),
             Profile::Dipole(dipoles) => dipoles.map(|d| d.reflectance(r) / d.total()),
         }
     }

@@ -28,7 +28,11 @@ pub static INFO: TableInfo = TableInfo {
     coordinates: &["thickness"],
     layouts: &[
         Layout { id: "gpu-gems", doc: "sum w_i exp(-d^2 / (2 v_i))", channels: CHANNELS },
-        Layout { id: "jimenez", doc: "sum w_i exp(-d^2 / v_i): T at the thickness sqrt(2) d", channels: CHANNELS },
+        Layout {
+            id: "jimenez",
+            doc: "sum w_i exp(-d^2 / v_i): T at the thickness sqrt(2) d",
+            channels: CHANNELS,
+        },
     ],
     model: ModelUse::None,
     params: profile::PARAMS,

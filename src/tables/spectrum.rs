@@ -9,10 +9,11 @@ use crate::terms::metals;
 use std::sync::OnceLock;
 
 /// The rule in words, for metadata.
-pub const RULE: &str = "Gauss-Legendre between the kinks of light and eye, 360 to 830 nm, orders raised until two agree";
+pub const RULE: &str =
+    "Gauss-Legendre between the kinks of light and eye, 360 to 830 nm, orders raised until two agree";
 
 /// Orders between two kinks.
-const ORDERS: [usize; 7] = [1, 2, 3, 5, 8, 13, 21];
+const ORDERS: [usize; 8] = [1, 2, 3, 5, 8, 13, 21, 34];
 
 /// A wavelength in nm, and what unit reflectance there adds to red, green and blue.
 type Node = (f64, [f64; 3]);
@@ -86,7 +87,8 @@ impl Spectrum {
     /// The error is twice the difference of the last two orders, with a part of that of the other channels, so that one
     /// that agrees by chance does not pass.
     pub fn colour(&self, tolerance: f64, f: &mut dyn FnMut(f64) -> f64) -> Estimate {
-        let mut e = Estimate { value: [0.0; MAX_CHANNELS], error: [f64::INFINITY; MAX_CHANNELS], evaluations: 0 };
+        let mut e =
+            Estimate { value: [0.0; MAX_CHANNELS], error: [f64::INFINITY; MAX_CHANNELS], evaluations: 0 };
         let mut before = sums(&self.levels[0], f);
         let mut count = self.levels[0].len();
         for level in &self.levels[1..] {

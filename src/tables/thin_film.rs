@@ -59,7 +59,8 @@ pub static INFO: TableInfo = TableInfo {
 };
 
 fn default_axes() -> Vec<Axis> {
-    let axis = |id: &str, len, domain| Quantity::find(id).map(|q| Axis::new(q, len, Texel::Endpoint).over(domain));
+    let axis =
+        |id: &str, len, domain| Quantity::find(id).map(|q| Axis::new(q, len, Texel::Endpoint).over(domain));
     [axis("mu", 64, [0.0, 1.0]), axis("film", 256, [0.0, 1200.0])].into_iter().flatten().collect()
 }
 

@@ -24,7 +24,11 @@ pub static INFO: TableInfo = TableInfo {
         Layout {
             id: "visibility",
             doc: "specular = F D texel",
-            channels: &[ChannelInfo { id: "visibility", meaning: "G2 / (4 mu_o mu_i)", range: [0.0, 3.4e38] }],
+            channels: &[ChannelInfo {
+                id: "visibility",
+                meaning: "G2 / (4 mu_o mu_i)",
+                range: [0.0, 3.4e38],
+            }],
         },
         Layout {
             id: "g2",

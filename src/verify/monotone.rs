@@ -51,9 +51,8 @@ fn check(case: &Case<'_>) -> Outcome {
                 * sign
                 * if forward < 0.0 { -1.0 } else { 1.0 };
             let slack = case.table.errors[texel * channels + c] + case.table.errors[before * channels + c];
-            outcome.tighten(step + slack, || {
-                format!("{}, {}", case.table.channels[c].id, place(grid, texel))
-            });
+            outcome
+                .tighten(step + slack, || format!("{}, {}", case.table.channels[c].id, place(grid, texel)));
         }
     }
     if outcome.at.is_empty() { Outcome::vacuous("one texel") } else { outcome }

@@ -4,9 +4,9 @@
 
 use super::{Case, Law, Outcome, seeds};
 use crate::integrate::{Sums, line};
+use crate::tables::integral::{Functional, integrate};
 use crate::tables::phase_function::Phase;
 use crate::tables::profile::Profile;
-use crate::tables::integral::{Functional, integrate};
 use crate::tables::sweep::Sweep;
 use crate::tables::{Baker, diffusion_profile, importance, place};
 use std::f64::consts::PI;
@@ -106,7 +106,8 @@ fn sphere(case: &Case<'_>) -> Outcome {
         let deflection = spec.axis("deflection").unwrap_or(0);
         // peaks are as narrow as 1 - |g|, on either side
         let near = [0.0, 1e-4, 1e-3, 1e-2, 0.1, 0.5];
-        let breaks: Vec<f64> = near.into_iter().chain([PI / 2.0]).chain(near.into_iter().rev().map(|x| PI - x)).collect();
+        let breaks: Vec<f64> =
+            near.into_iter().chain([PI / 2.0]).chain(near.into_iter().rev().map(|x| PI - x)).collect();
         let sum = add_up(&*case.bound.baker, &breaks, 1, 1e-10, |theta| {
             let mut at = vec![0.0; spec.grid.axes().len()];
             if let (Some(i), Some(g)) = (axis, g) {
@@ -132,7 +133,9 @@ fn albedo(case: &Case<'_>) -> Outcome {
         let Ok(chart) = integrate(&*model, view, &[Functional::One], 1e-5) else { continue };
         let (a, b) = (marginal.total, chart.value[0]);
         let error = marginal.error + chart.error[0] + ROUNDING;
-        outcome.tighten(error - (a - b).abs(), || format!("{a:.9} against {b:.9}, {}", place(&case.table.grid, texel)));
+        outcome.tighten(error - (a - b).abs(), || {
+            format!("{a:.9} against {b:.9}, {}", place(&case.table.grid, texel))
+        });
     }
     outcome
 }
@@ -140,7 +143,8 @@ fn albedo(case: &Case<'_>) -> Outcome {
 /// A cumulative table is 0 at 0 and everything far out.
 fn ends(case: &Case<'_>, profile: &Profile) -> Outcome {
     let spec = &case.bound.spec;
-    let all = if spec.kind.id == "diffusion-profile" { diffusion_profile::factor(spec, profile) } else { [1.0; 3] };
+    let all =
+        if spec.kind.id == "diffusion-profile" { diffusion_profile::factor(spec, profile) } else { [1.0; 3] };
     let end = outwards(profile).last().copied().unwrap_or(0.0);
     let mut outcome = Outcome::start();
     for (at, part) in [(0.0, 0.0), (1e3 * end, 1.0)] {
@@ -170,7 +174,8 @@ fn weights(case: &Case<'_>) -> Outcome {
     let mut outcome = Outcome::start();
     for c in 1..4 {
         let sum: f64 = (0..case.table.grid.len()).map(|t| case.table.values[t * channels + c]).sum();
-        outcome.tighten(ROUNDING - (sum - 1.0).abs(), || format!("{} sum to {sum}", case.table.channels[c].id));
+        outcome
+            .tighten(ROUNDING - (sum - 1.0).abs(), || format!("{} sum to {sum}", case.table.channels[c].id));
     }
     outcome
 }
@@ -181,9 +186,7 @@ fn rows(case: &Case<'_>, axis: usize) -> Vec<f64> {
     let stride: usize = grid.axes()[..axis].iter().map(|a| a.len).product();
     let len = grid.axes()[axis].len;
     let count = len.min(ROWS);
-    (0..count)
-        .map(|i| grid.texel(stride * (i * (len - 1) / (count - 1).max(1))).values()[axis])
-        .collect()
+    (0..count).map(|i| grid.texel(stride * (i * (len - 1) / (count - 1).max(1))).values()[axis]).collect()
 }
 
 /// A sum over fresh texels, with its own error and the largest that the baker admits, times the measure.

@@ -22,7 +22,12 @@ fn with(params: &str, more: &str) -> String {
 fn profiles_agree_with_high_precision_values() {
     for row in rows("points_skin", "deon_luebke_R") {
         let bound = table("diffusion-profile", "area", "{}", &[("radius", 0.0, FAR)]);
-        close(&row.name, texel(&bound, &[row.num("r_mm")], 1e-9).value[row.channel()], row.value, 1e-13 * row.value);
+        close(
+            &row.name,
+            texel(&bound, &[row.num("r_mm")], 1e-9).value[row.channel()],
+            row.value,
+            1e-13 * row.value,
+        );
     }
     for row in rows("points_skin", "burley2015_R") {
         let params = format!(
@@ -80,7 +85,8 @@ fn a_dipole_integrates_to_its_total() {
         close(&row.name, texel(&bound, &[1e7], 1e-9).value[0], row.value, 1e-13);
     }
     // skin1 of Jensen and others 2001, Fig. 5: the coefficients of the defaults give the diffuse reflectance printed beside them
-    let bound = table("diffusion-profile", "inside", &with(DIPOLE, r#""scale": "albedo""#), &[("radius", 0.0, FAR)]);
+    let bound =
+        table("diffusion-profile", "inside", &with(DIPOLE, r#""scale": "albedo""#), &[("radius", 0.0, FAR)]);
     let total = texel(&bound, &[1e6], 1e-9);
     for (got, printed) in total.value.iter().zip([0.44, 0.22, 0.13]) {
         close("skin1", *got, printed, 0.02);
@@ -118,7 +124,9 @@ fn kernels_are_line_integrals() {
 
 #[test]
 fn transmittances_agree_with_high_precision_values() {
-    for (name, layout) in [("skin_transmit_exp_d2_over_2v", "gpu-gems"), ("skin_transmit_exp_d2_over_v ", "jimenez")] {
+    for (name, layout) in
+        [("skin_transmit_exp_d2_over_2v", "gpu-gems"), ("skin_transmit_exp_d2_over_v ", "jimenez")]
+    {
         let bound = table("skin-transmittance", layout, "{}", &[("thickness", 0.0, FAR)]);
         for row in rows("points_skin", name) {
             let got = texel(&bound, &[row.num("d_mm")], 1e-9).value[row.channel()];
@@ -131,8 +139,8 @@ fn transmittances_agree_with_high_precision_values() {
     for d in [0.1, 1.0, 4.0] {
         let sum = line::integrate(&[0.0, 1.0, 10.0, 100.0, 1000.0], 3, 1e-12, &mut |r, out| {
             let at = texel(&area, &[libm::hypot(r, d)], 1e-9);
-            for c in 0..3 {
-                out[c] = 2.0 * std::f64::consts::PI * r * at.value[c];
+            for (out, v) in out.iter_mut().zip(at.value) {
+                *out = 2.0 * std::f64::consts::PI * r * v;
             }
         });
         for c in 0..3 {
@@ -208,7 +216,9 @@ fn fits_improve_with_their_number_and_keep_the_energy() {
 
 #[test]
 fn laws_hold_for_every_profile_and_layout() {
-    let axis = |id: &str, lo: f64, hi: f64| Axis::new(Quantity::find(id).unwrap(), 17, Texel::Endpoint).over([lo, hi]);
+    let axis = |id: &str, lo: f64, hi: f64| {
+        Axis::new(Quantity::find(id).unwrap(), 17, Texel::Endpoint).over([lo, hi])
+    };
     for params in ["{}", BURLEY, DIPOLE, GREY] {
         for (kind, layout, axis) in [
             ("diffusion-profile", "ring", axis("radius", 0.0, 20.0)),

@@ -11,7 +11,8 @@ const MU: (&str, f64, f64) = ("mu", 0.0, 1.0);
 fn conductors_agree_with_high_precision_values() {
     for (name, channel) in [("fresnel_conductor_s", 0), ("fresnel_conductor_p", 3)] {
         for row in rows("points_fresnel", name) {
-            let params = format!(r#"{{"metal": "index", "n": {}, "k": {}}}"#, row.params["n"], row.params["k"]);
+            let params =
+                format!(r#"{{"metal": "index", "n": {}, "k": {}}}"#, row.params["n"], row.params["k"]);
             let bound = table("fresnel-conductor", "polarised", &params, &[MU]);
             let e = texel(&bound, &[libm::cos(row.angle)], 1e-9);
             close(&row.name, e.value[channel], row.value, 1e-13);
@@ -49,8 +50,11 @@ fn gold_is_what_another_program_computes() {
     }
 }
 
-/// As [`GOLD`]: n2, n3, k3, thickness, cosine, colour.
-const FILMS: &[(f64, f64, f64, f64, f64, [f64; 3])] = &[
+/// n2, n3, k3, thickness, cosine, colour.
+type Coloured = (f64, f64, f64, f64, f64, [f64; 3]);
+
+/// As [`GOLD`].
+const FILMS: &[Coloured] = &[
     (1.33, 1.5, 0.0, 0.0, 1.0, [0.04, 0.04, 0.04]),
     (1.33, 1.5, 0.0, 400.0, 1.0, [0.016_798_289_517_6, 0.039_863_027_688_1, 0.013_567_438_918_8]),
     (1.5, 1.33, 0.0, 550.0, 0.5, [0.075_968_384_480_7, 0.121_100_826_785, 0.065_518_992_687_7]),
@@ -114,7 +118,12 @@ fn schlick_and_its_variants_agree_with_high_precision_values() {
     // negative values are cut where renderers cut them
     let dark = r#"{"variant": "f82-tint", "f0": 0, "tint": 0}"#;
     let at = [0.261];
-    close("dip", texel(&table("fresnel-schlick", "unclamped", dark, &[MU]), &at, 1e-9).value[0], -0.1268, 1e-4);
+    close(
+        "dip",
+        texel(&table("fresnel-schlick", "unclamped", dark, &[MU]), &at, 1e-9).value[0],
+        -0.1268,
+        1e-4,
+    );
     close("cut", texel(&table("fresnel-schlick", "clamped", dark, &[MU]), &at, 1e-9).value[0], 0.0, 0.0);
 }
 
@@ -138,7 +147,9 @@ fn masking_and_visibility_are_closed_forms_at_width_one() {
         }
     }
     // Lambda of Beckmann against high-precision values of equal widths
-    for row in rows("points_terms", "Lambda_beckmann").iter().filter(|r| r.params["alpha_x"] == r.params["alpha_y"]) {
+    for row in
+        rows("points_terms", "Lambda_beckmann").iter().filter(|r| r.params["alpha_x"] == r.params["alpha_y"])
+    {
         let bound = table("masking", "g1", r#"{"distribution": "beckmann"}"#, &[MU, ("alpha", 0.0, 2.0)]);
         let got = texel(&bound, &[libm::cos(row.angle), row.num("alpha_x")], 1e-9).value[0];
         close(&row.name, got, 1.0 / (1.0 + row.value), 1e-12);
@@ -155,7 +166,12 @@ fn laws_hold() {
     for (kind, layout, params, axes) in [
         ("fresnel-conductor", "rgb", r#"{"metal": "cu"}"#, vec![axis("mu")]),
         ("fresnel-conductor", "srgb", r#"{"metal": "cu"}"#, vec![axis("mu")]),
-        ("fresnel-schlick", "clamped", r#"{"variant": "f82-tint", "tint": 0.2}"#, vec![axis("mu"), axis("f0")]),
+        (
+            "fresnel-schlick",
+            "clamped",
+            r#"{"variant": "f82-tint", "tint": 0.2}"#,
+            vec![axis("mu"), axis("f0")],
+        ),
         ("thin-film", "srgb", "{}", vec![axis("mu"), film()]),
         ("thin-film", "series", "{}", vec![axis("mu"), film()]),
         ("masking", "g1", "{}", vec![axis("mu"), axis("roughness")]),

@@ -77,7 +77,12 @@ fn a_cosine_lobe_seen_from_above_is_sampled_by_its_power() {
             for tolerance in [1e-3, 1e-6] {
                 let e = texel(&bound, &[u, 0.25, 1.0], tolerance);
                 let expected = libm::pow(1.0 - u, 1.0 / (n + 2.0));
-                close(&format!("{n} {u} {tolerance:e}"), e.value[0], expected, tolerance.min(e.error[0] + 1e-13));
+                close(
+                    &format!("{n} {u} {tolerance:e}"),
+                    e.value[0],
+                    expected,
+                    tolerance.min(e.error[0] + 1e-13),
+                );
                 close("phi", e.value[1], 0.25 * TAU, tolerance);
             }
         }
@@ -109,7 +114,11 @@ fn marginals_add_up_to_the_albedo() {
             let marginal = marginal(&*model, view, 1e-7);
             let chart = integrate(&*model, view, &[Functional::One], 1e-9).unwrap();
             let error = (marginal.total - chart.value[0]).abs();
-            assert!(error <= marginal.error + chart.error[0] + 1e-10, "{id} {params} {mu}: {error:e} {:e}", marginal.error);
+            assert!(
+                error <= marginal.error + chart.error[0] + 1e-10,
+                "{id} {params} {mu}: {error:e} {:e}",
+                marginal.error
+            );
             assert!(error < 2e-7, "{id} {params} {mu}: {error:e}");
         }
     }
@@ -126,8 +135,8 @@ fn samples_have_the_mean_of_the_model() {
         for j in 0..n {
             let at = [(f64::from(i) + 0.5) / f64::from(n), (f64::from(j) + 0.5) / f64::from(n), mu, alpha];
             let e = texel(&bound, &at, 1e-4);
-            for c in 0..3 {
-                mean[c] += e.value[c] / f64::from(n * n);
+            for (mean, v) in mean.iter_mut().zip(e.value) {
+                *mean += v / f64::from(n * n);
             }
         }
     }
@@ -138,7 +147,8 @@ fn samples_have_the_mean_of_the_model() {
     let m = 512;
     for i in 0..m {
         for j in 0..m {
-            let u = glam::DVec2::new((f64::from(i) + 0.5) / f64::from(m), (f64::from(j) + 0.5) / f64::from(m));
+            let u =
+                glam::DVec2::new((f64::from(i) + 0.5) / f64::from(m), (f64::from(j) + 0.5) / f64::from(m));
             if let Some(s) = model.sample(wo, u) {
                 let weight = model.eval(wo, s.wi) * s.wi.z / model.pdf(wo, s.wi);
                 sum += weight * s.wi;
@@ -154,7 +164,11 @@ fn samples_have_the_mean_of_the_model() {
 
 #[test]
 fn laws_hold_and_mirrors_are_refused() {
-    for (id, layout, more) in [("ggx", "angles", &["roughness"][..]), ("ggx", "direction-pdf", &[]), ("oren-nayar", "direction", &[])] {
+    for (id, layout, more) in [
+        ("ggx", "angles", &["roughness"][..]),
+        ("ggx", "direction-pdf", &[]),
+        ("oren-nayar", "direction", &[]),
+    ] {
         let bound = table(id, "{}", layout, more);
         let table = crate::common::bake(&bound, 1e-4).unwrap();
         let checked = verify::check(&bound, table, 1e-4, &[]);

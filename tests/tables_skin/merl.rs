@@ -88,7 +88,11 @@ impl Brdf {
             + theta_diff_index(theta_diff) * BRDF_SAMPLING_RES_PHI_D / 2
             + theta_half_index(theta_half) * BRDF_SAMPLING_RES_PHI_D / 2 * BRDF_SAMPLING_RES_THETA_D;
         let plane = BRDF_SAMPLING_RES_THETA_H * BRDF_SAMPLING_RES_THETA_D * BRDF_SAMPLING_RES_PHI_D / 2;
-        [self.0[ind] * (1.0 / 1500.0), self.0[ind + plane] * (1.15 / 1500.0), self.0[ind + 2 * plane] * (1.66 / 1500.0)]
+        [
+            self.0[ind] * (1.0 / 1500.0),
+            self.0[ind + plane] * (1.15 / 1500.0),
+            self.0[ind + 2 * plane] * (1.66 / 1500.0),
+        ]
     }
 }
 
@@ -125,7 +129,8 @@ fn a_matte_surface_is_the_same_everywhere() {
         (state >> 11) as f64 / (1u64 << 53) as f64
     };
     for _ in 0..2000 {
-        let [a, b, c, d] = [1.35 * unit(), PI * (2.0 * unit() - 1.0), 1.35 * unit(), PI * (2.0 * unit() - 1.0)];
+        let [a, b, c, d] =
+            [1.35 * unit(), PI * (2.0 * unit() - 1.0), 1.35 * unit(), PI * (2.0 * unit() - 1.0)];
         let got = brdf.lookup(a, b, c, d);
         for (got, factor) in got.iter().zip([1.0, 0.5, 0.25]) {
             let expected = 0.5 * FRAC_1_PI * factor;
@@ -147,7 +152,8 @@ fn every_cell_is_found_by_the_published_indices() {
             for p in (0..180).step_by(11) {
                 let middle = |i: usize, n: f64| (i as f64 + 0.5) / n;
                 let x = middle(h, 90.0);
-                let (theta_h, theta_d, phi_d) = (x * x * FRAC_PI_2, middle(d, 90.0) * FRAC_PI_2, middle(p, 180.0) * PI);
+                let (theta_h, theta_d, phi_d) =
+                    (x * x * FRAC_PI_2, middle(d, 90.0) * FRAC_PI_2, middle(p, 180.0) * PI);
                 let (wo, wi) = directions(theta_h, theta_d, phi_d);
                 let ((ti, fi), (to, fo)) = (spherical(wi), spherical(wo));
                 // what the reader makes of the directions are the angles that they were made from
@@ -156,9 +162,16 @@ fn every_cell_is_found_by_the_published_indices() {
                     assert!((got - expected).abs() < 1e-6, "{theta_h} {theta_d} {phi_d}: {angles:?}");
                 }
                 // turned about the normal, and with both directions exchanged, it is the same cell
-                for got in [brdf.lookup(ti, fi, to, fo), brdf.lookup(ti, fi + 1.0, to, fo + 1.0), brdf.lookup(to, fo, ti, fi)] {
+                for got in [
+                    brdf.lookup(ti, fi, to, fo),
+                    brdf.lookup(ti, fi + 1.0, to, fo + 1.0),
+                    brdf.lookup(to, fo, ti, fi),
+                ] {
                     let expected = model.eval(wo, wi);
-                    assert!((got[1] - expected).abs() <= 6.1e-8 * expected, "{h} {d} {p}: {got:?} {expected}");
+                    assert!(
+                        (got[1] - expected).abs() <= 6.1e-8 * expected,
+                        "{h} {d} {p}: {got:?} {expected}"
+                    );
                     lit += usize::from(expected > 0.0);
                 }
                 seen += 1;
@@ -179,12 +192,17 @@ fn what_does_not_fit_is_refused() {
         };
         request.bind().map(|_| ())
     };
-    assert!(bind("ggx", r#"{"alpha_x": 0.1, "alpha_y": 0.4}"#).unwrap_err().to_string().contains("anisotropic"));
+    assert!(
+        bind("ggx", r#"{"alpha_x": 0.1, "alpha_y": 0.4}"#).unwrap_err().to_string().contains("anisotropic")
+    );
     assert!(bind("phong-classic", "{}").unwrap_err().to_string().contains("not reciprocal"));
     assert!(bind("mirror", "{}").unwrap_err().to_string().contains("mirror"));
     // another grid: refused by the container, in words
     let grid = brdfbake::grid::Grid::new(
-        brdfbake::tables::merl::default_axes().into_iter().map(|a| brdfbake::grid::Axis { len: 4, ..a }).collect(),
+        brdfbake::tables::merl::default_axes()
+            .into_iter()
+            .map(|a| brdfbake::grid::Axis { len: 4, ..a })
+            .collect(),
     );
     let grid = grid.unwrap();
     let channels = [brdfbake::grid::Channel { id: "f".into(), meaning: String::new(), range: [0.0, 1.0] }];
@@ -207,7 +225,11 @@ fn python_reads_it_too() {
     let path = folder.path().join("lambert.binary");
     std::fs::write(&path, file("lambert", r#"{"rho": 0.5}"#)).unwrap();
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/foreign/read_merl.py");
-    let out = std::process::Command::new("python3").arg(script).arg(&path).args(["0.3", "0", "0.8", "2.5"]).output();
+    let out = std::process::Command::new("python3")
+        .arg(script)
+        .arg(&path)
+        .args(["0.3", "0", "0.8", "2.5"])
+        .output();
     let text = String::from_utf8(out.unwrap().stdout).unwrap();
     for number in text.split_whitespace() {
         assert!((number.parse::<f64>().unwrap() - 0.5 * FRAC_1_PI).abs() < 1e-7, "{text}");

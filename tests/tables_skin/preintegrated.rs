@@ -22,7 +22,11 @@ fn the_ring_agrees_with_high_precision_values() {
         for tolerance in [1e-3, 2.4e-4, 1e-6, 1e-9, 1e-11] {
             let (e, c) = (texel(&bound, &at, tolerance), row.channel());
             let error = (e.value[c] - row.value).abs();
-            assert!(error <= tolerance && error <= e.error[c] + 1e-15, "{} {tolerance:e}: {error:e}", row.name);
+            assert!(
+                error <= tolerance && error <= e.error[c] + 1e-15,
+                "{} {tolerance:e}: {error:e}",
+                row.name
+            );
             assert!(e.error[c] <= tolerance, "{}: estimate {:e}", row.name, e.error[c]);
         }
     }
@@ -81,7 +85,15 @@ fn the_mean_light_is_kept() {
                     if sphere { v * libm::sin(theta) } else { v }
                 };
                 let near = (curvature).min(0.5);
-                let ends = [0.0, 0.5 * PI - near, 0.5 * PI - 0.1 * near, 0.5 * PI, 0.5 * PI + 0.1 * near, 0.5 * PI + near, PI];
+                let ends = [
+                    0.0,
+                    0.5 * PI - near,
+                    0.5 * PI - 0.1 * near,
+                    0.5 * PI,
+                    0.5 * PI + 0.1 * near,
+                    0.5 * PI + near,
+                    PI,
+                ];
                 let sum: f64 = ends.windows(2).map(|w| gauss::rule(24).integrate(w[0], w[1], f)).sum();
                 close(params, sum, if sphere { 0.5 } else { 1.0 }, 2e-6);
             }
@@ -127,9 +139,16 @@ fn a_profile_that_diverges_on_a_ring_is_refused() {
 
 #[test]
 fn laws_hold_and_see_a_wrong_table() {
-    let axes = |id: &str, lo: f64, hi: f64| Axis::new(Quantity::find(id).unwrap(), 9, Texel::Endpoint).over([lo, hi]);
+    let axes = |id: &str, lo: f64, hi: f64| {
+        Axis::new(Quantity::find(id).unwrap(), 9, Texel::Endpoint).over([lo, hi])
+    };
     for params in ["{}", r#"{"over": "sphere", "profile": "burley"}"#] {
-        let bound = request("preintegrated-skin", "rgb", params, vec![axes("ndotl", -1.0, 1.0), axes("curvature", 0.0, 2.0)]);
+        let bound = request(
+            "preintegrated-skin",
+            "rgb",
+            params,
+            vec![axes("ndotl", -1.0, 1.0), axes("curvature", 0.0, 2.0)],
+        );
         let mut table = bake(&bound, 1e-5).unwrap();
         assert!(verify::check(&bound, table.clone(), 1e-5, &[]).is_ok(), "{params}");
         table.values[7] = 1.1;

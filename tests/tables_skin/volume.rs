@@ -22,7 +22,8 @@ fn phase_functions_agree_with_high_precision_values() {
             if row.params.get("g").is_some_and(|g| g.as_f64().unwrap().abs() > 0.999) {
                 continue;
             }
-            let given: Vec<String> = names.iter().map(|n| format!(r#", "{}": {}"#, n.1, row.params[n.0])).collect();
+            let given: Vec<String> =
+                names.iter().map(|n| format!(r#", "{}": {}"#, n.1, row.params[n.0])).collect();
             let params = format!(r#"{{"phase": "{id}"{}}}"#, given.concat());
             let bound = table("phase-function", "density", &params, &[ANGLE]);
             close(&row.name, texel(&bound, &[row.angle], 1e-9).value[0], row.value, 2e-13 * row.value);
@@ -109,9 +110,16 @@ fn black_bodies_agree_with_high_precision_values() {
 
 #[test]
 fn laws_hold() {
-    let axis = |id: &str, lo: f64, hi: f64| Axis::new(Quantity::find(id).unwrap(), 17, Texel::Endpoint).over([lo, hi]);
+    let axis = |id: &str, lo: f64, hi: f64| {
+        Axis::new(Quantity::find(id).unwrap(), 17, Texel::Endpoint).over([lo, hi])
+    };
     for (kind, layout, params, axes) in [
-        ("phase-function", "density", r#"{"phase": "draine"}"#, vec![axis("deflection", 0.0, PI), axis("g", -0.9, 0.9)]),
+        (
+            "phase-function",
+            "density",
+            r#"{"phase": "draine"}"#,
+            vec![axis("deflection", 0.0, PI), axis("g", -0.9, 0.9)],
+        ),
         ("phase-function", "relative", r#"{"phase": "fog"}"#, vec![axis("deflection", 0.0, PI)]),
         ("phase-sampling", "cosine", r#"{"phase": "fog"}"#, vec![axis("u", 0.0, 1.0)]),
         ("phase-sampling", "angle", "{}", vec![axis("u", 0.0, 1.0), axis("g", -0.9, 0.9)]),
