@@ -3,7 +3,7 @@
 use super::profile::{self, Profile};
 use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
-use crate::grid::{Axis, Quantity, Texel};
+use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::math::root::solve;
 use crate::terms::burley_diffusion;
@@ -36,7 +36,7 @@ pub static INFO: TableInfo = TableInfo {
 };
 
 fn default_axes() -> Vec<Axis> {
-    let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([0.0, 0.999]);
+    let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([0.0, 0.999]).warped(Warp::OneMinusPower(0.25));
     Quantity::find("u").map(axis).into_iter().collect()
 }
 

@@ -6,7 +6,7 @@
 use super::profile::{self, Profile};
 use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
-use crate::grid::{Axis, Quantity, Texel};
+use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use std::f64::consts::SQRT_2;
 
@@ -44,7 +44,7 @@ pub static INFO: TableInfo = TableInfo {
 };
 
 fn default_axes() -> Vec<Axis> {
-    let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([0.0, 8.0]);
+    let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([0.0, 8.0]).warped(Warp::Power(0.5));
     Quantity::find("thickness").map(axis).into_iter().collect()
 }
 

@@ -13,7 +13,7 @@ pub const RULE: &str =
     "Gauss-Legendre between the kinks of light and eye, 360 to 830 nm, orders raised until two agree";
 
 /// Orders between two kinks.
-const ORDERS: [usize; 8] = [1, 2, 3, 5, 8, 13, 21, 34];
+const ORDERS: [usize; 10] = [1, 2, 3, 5, 8, 13, 21, 34, 55, 89];
 
 /// A wavelength in nm, and what unit reflectance there adds to red, green and blue.
 type Node = (f64, [f64; 3]);
