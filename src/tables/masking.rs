@@ -2,7 +2,7 @@
 
 use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
-use crate::grid::Axis;
+use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::Param;
 use crate::terms::schlick_masking::{self, K};
@@ -37,12 +37,22 @@ pub static INFO: TableInfo = TableInfo {
     params: &[DISTRIBUTION],
     laws: &["finite", "range", "monotone"],
     axes: default_axes,
-    notes: "G1 falls to 0 at the horizon on the scale mu ~ alpha.",
+    notes: "G1 falls to 0 at the horizon on the scale mu ~ alpha: couple the axis of mu to alpha, as the default axes do.",
     bind,
 };
 
 fn default_axes() -> Vec<Axis> {
-    super::dfg::view_and_roughness(64)
+    axes(&["mu"], 64, 64, [0.01, 1.0])
+}
+
+/// Cosines on axes that open the corner where they and the width go to 0 together, then roughness.
+pub(super) fn axes(cosines: &[&str], len: usize, widths: usize, domain: [f64; 2]) -> Vec<Axis> {
+    let warp = Warp::Coupled { to: "alpha".to_owned(), power: 2.0, scale: 1.0, exponent: 1.0 };
+    let cosines = cosines.iter().filter_map(|id| Quantity::find(id));
+    let mut axes: Vec<Axis> =
+        cosines.map(|q| Axis::new(q, len, Texel::Endpoint).warped(warp.clone())).collect();
+    axes.extend(Quantity::find("roughness").map(|q| Axis::new(q, widths, Texel::Endpoint).over(domain)));
+    axes
 }
 
 struct Table {

@@ -62,8 +62,10 @@ static PARAMS: [Param; 1 + profile::PARAMS.len()] = profile::with(Param::choice(
 ));
 
 fn default_axes() -> Vec<Axis> {
-    let axis = |id: &str, domain| Quantity::find(id).map(|q| Axis::new(q, 128, Texel::Endpoint).over(domain));
-    [axis("ndotl", [-1.0, 1.0]), axis("curvature", [0.0, 1.0])].into_iter().flatten().collect()
+    // odd, so that the terminator, a kink where nothing is curved, lies on a texel: four times better than 128
+    let axis =
+        |id: &str, len, domain| Quantity::find(id).map(|q| Axis::new(q, len, Texel::Endpoint).over(domain));
+    [axis("ndotl", 129, [-1.0, 1.0]), axis("curvature", 128, [0.0, 1.0])].into_iter().flatten().collect()
 }
 
 struct Skin {

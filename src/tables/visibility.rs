@@ -3,7 +3,7 @@
 use super::masking::{DISTRIBUTION, direction, schlick};
 use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
-use crate::grid::{Axis, Quantity, Texel};
+use crate::grid::Axis;
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::{Param, Preset};
 use crate::terms::schlick_masking;
@@ -50,7 +50,9 @@ pub static INFO: TableInfo = TableInfo {
 };
 
 fn default_axes() -> Vec<Axis> {
-    ["mu", "mu_i"].into_iter().filter_map(Quantity::find).map(|q| Axis::new(q, 64, Texel::Center)).collect()
+    // where both cosines are 0 there is no value
+    let above = |a: Axis| if a.quantity.base_id() == "alpha" { a } else { a.over([0.01, 1.0]) };
+    super::masking::axes(&["mu", "mu_i"], 32, 16, [0.1, 1.0]).into_iter().map(above).collect()
 }
 
 struct Table {
