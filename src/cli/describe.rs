@@ -108,9 +108,9 @@ pub fn table(t: &TableInfo) -> String {
             text.push_str(&format!("    {} in [{}, {}]: {}\n", c.id, c.range[0], c.range[1], c.meaning));
         }
     }
-    if !t.extra.is_empty() {
+    if !t.mix.extra().is_empty() {
         text.push_str("more channels, to be named in `channels = [..]` with those above:\n");
-        for c in t.extra {
+        for c in t.mix.extra() {
             text.push_str(&format!("  {} in [{}, {}]: {}\n", c.id, c.range[0], c.range[1], c.meaning));
         }
     }

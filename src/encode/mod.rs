@@ -55,6 +55,7 @@ mod exr_read;
 pub mod hdr;
 pub mod ktx2;
 mod ktx2_read;
+pub mod merl;
 pub mod npy;
 pub mod option;
 pub mod png;
@@ -126,7 +127,7 @@ pub trait Encoder: Debug + Send + Sync {
 
 /// Every container.
 pub static ENCODERS: &[&dyn Encoder] =
-    &[&exr::Exr, &ktx2::Ktx2, &dds::Dds, &png::Png, &hdr::Hdr, &npy::Npy, &raw::Raw, &csv::Csv];
+    &[&exr::Exr, &ktx2::Ktx2, &dds::Dds, &png::Png, &hdr::Hdr, &npy::Npy, &raw::Raw, &csv::Csv, &merl::Merl];
 
 /// Looks a container up by its id.
 #[must_use]
@@ -226,6 +227,14 @@ pub enum EncodeError {
         texels: usize,
         /// Number of channels.
         channels: usize,
+    },
+    /// Axes that the container has no words for.
+    #[error("{format} cannot hold these axes; {fault}")]
+    Axes {
+        /// Container id.
+        format: &'static str,
+        /// What it takes.
+        fault: &'static str,
     },
     /// More rows or columns than the container can count.
     #[error("{format} cannot hold {width} x {height} pixels; each side is at most {limit}")]

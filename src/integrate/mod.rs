@@ -7,6 +7,7 @@
 pub mod adaptive;
 pub mod broad;
 pub mod chart;
+pub mod density;
 pub mod ellipse;
 pub mod facet;
 pub mod fibre;

@@ -109,7 +109,9 @@ impl<'a> Binder<'a> {
             BindError::Unknown { what, .. } => faults.value(at(what), fault),
             BindError::ChannelTwice { got } => faults.value(self.channel_path(got, 1), fault),
             BindError::ChannelCount { .. } => faults.value(at("channels"), fault),
-            BindError::LayoutAndChannels { .. } => faults.key(at("channels"), fault),
+            BindError::LayoutAndChannels { .. } | BindError::NoMix { .. } => {
+                faults.key(at("channels"), fault)
+            }
             BindError::Model { .. } => faults.value(at("model"), fault),
             BindError::Param(e) => match e.key().map(|k| self.param(k)) {
                 Some(path) if matches!(e, ParamError::Unknown { .. }) => faults.key(path, fault),
@@ -190,7 +192,9 @@ impl<'a> Binder<'a> {
                 });
             }),
             BindError::ChannelCount { max, .. } => self.repair_channels(|all| all.truncate(*max)),
-            BindError::LayoutAndChannels { .. } => self.request.channels.take().is_some(),
+            BindError::LayoutAndChannels { .. } | BindError::NoMix { .. } => {
+                self.request.channels.take().is_some()
+            }
             BindError::Param(e) => e.key().is_some_and(|key| self.request.params.remove(key).is_some()),
             BindError::Both { key, .. } => self.request.params.remove(key).is_some(),
             BindError::IdleAxis { axis, .. } => self.find(axis).is_some_and(|i| self.remove_axis(i)),

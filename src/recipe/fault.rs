@@ -277,6 +277,7 @@ fn bind_remedy(error: &BindError) -> Option<&'static str> {
         }
         BindError::IdleAxis { .. } => Some("leave the axis out"),
         BindError::ChannelTwice { .. } => Some("a file has one channel of a name; leave one out"),
+        BindError::NoMix { .. } => Some("name a layout instead"),
         BindError::LayoutAndChannels { .. } => {
             Some("leave one of them out; a layout is a list of channels with a name")
         }

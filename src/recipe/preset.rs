@@ -21,7 +21,7 @@ macro_rules! preset {
 
 /// Every preset; the first is what `bake` takes if no recipe is given.
 pub static PRESETS: &[Preset] = &[
-    preset!("default", "a first look: one table of each kind, on the axes that converge best"),
+    preset!("default", "a first look: the tables of a glossy surface, on the axes that converge best"),
     preset!(
         "split-sum",
         "image-based lighting with the axes that most engines read: 128 x 128, linear, texel centres"
@@ -44,6 +44,16 @@ pub static PRESETS: &[Preset] = &[
         "split sum, directional and average albedo of GGX: what `bake --scene` bakes for glTF materials"
     ),
     preset!("ltc", "area lights: the matrices and magnitudes of linearly transformed cosines for GGX"),
+    preset!(
+        "skin",
+        "skin: pre-integrated diffusion, profiles, blur kernels, Gaussians, transmittance, and their samples"
+    ),
+    preset!(
+        "volume",
+        "fog, water and fire: phase functions and their samples, transmittance, Fresnel of water, black bodies"
+    ),
+    preset!("colour", "metals and thin films in colour, Schlick's factor, masking and visibility"),
+    preset!("tabulated", "GGX as a MERL binary, and as directions that sample it"),
     preset!("kelemen-skin", "the Beckmann texture of the skin shader of GPU Gems 3, chapter 14"),
 ];
 

@@ -118,10 +118,19 @@ pub(super) fn canonical(mut axis: Axis) -> Axis {
     axis
 }
 
-/// A value of `params`: a number or a word, as JSON.
+/// A value of `params`: a number, a word, or rows of numbers, as JSON.
 pub(super) fn param(value: &DeValue<'_>) -> Option<serde_json::Value> {
     match value {
         DeValue::String(s) => Some(serde_json::Value::from(s.as_ref())),
+        DeValue::Array(rows) if rows.iter().all(|row| row.get_ref().as_array().is_some()) => {
+            rows.iter().map(|row| numbers(row.get_ref())).collect()
+        }
         _ => as_number(value).filter(|v| v.is_finite()).map(serde_json::Value::from),
     }
+}
+
+/// A row of finite numbers.
+fn numbers(row: &DeValue<'_>) -> Option<serde_json::Value> {
+    let cells = row.as_array()?.iter();
+    cells.map(|c| as_number(c.get_ref()).filter(|v| v.is_finite()).map(serde_json::Value::from)).collect()
 }

@@ -2,7 +2,7 @@
 //! interface, that crosses it.
 
 use super::sides::Sides;
-use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::Axis;
 use crate::integrate::Estimate;
@@ -42,7 +42,7 @@ pub static INFO: TableInfo = TableInfo {
             channels: &[R, T, R_INSIDE, T_INSIDE],
         },
     ],
-    extra: &[],
+    mix: Mix::Free(&[]),
     model: ModelUse::Any("ggx"),
     params: &[],
     laws: &["finite", "range", "energy", "cross-check", "reciprocity"],

@@ -2,7 +2,7 @@
 
 use super::integral::{Functional, integrate};
 use super::sides::Sides;
-use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::graded::{Graded, Order};
@@ -35,7 +35,7 @@ pub static INFO: TableInfo = TableInfo {
         Layout { id: "r-t-avg", doc: "averages of what is reflected and transmitted", channels: &[R, T] },
         Layout { id: "both-sides", doc: "R + T from above and from inside", channels: &[E, E_INSIDE] },
     ],
-    extra: &[R_INSIDE, T_INSIDE],
+    mix: Mix::Free(&[R_INSIDE, T_INSIDE]),
     model: ModelUse::Any("ggx"),
     params: &[],
     laws: &["finite", "range", "energy", "reciprocity"],

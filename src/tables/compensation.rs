@@ -7,7 +7,7 @@ use super::average_albedo::average;
 use super::integral::{Functional, integrate};
 use super::memo::Memo;
 use super::sweep::Sweep;
-use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::Axis;
 use crate::integrate::{Estimate, MAX_CHANNELS};
@@ -45,7 +45,7 @@ pub static INFO: TableInfo = TableInfo {
         Layout { id: "lobe", doc: "f_ms = F_ms lobe(mu_o) lobe(mu_i)", channels: &[LOBE] },
         Layout { id: "turquin", doc: "f = f_single (1 + F0 turquin(mu_o))", channels: &[TURQUIN] },
     ],
-    extra: &[],
+    mix: Mix::Free(&[]),
     model: ModelUse::Split("ggx"),
     params: &[],
     laws: &["finite", "range", "reciprocity", "complement"],

@@ -9,7 +9,7 @@
 
 use super::integral::{Functional, integrate};
 use super::sweep::Sweep;
-use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS, Sums};
@@ -92,7 +92,7 @@ pub static INFO: TableInfo = TableInfo {
             channels: &[FC, TOTAL, DIFFUSE],
         },
     ],
-    extra: &[F82_X16],
+    mix: Mix::Free(&[F82_X16]),
     model: ModelUse::Split("ggx"),
     params: &[],
     laws: &["finite", "range", "energy", "split", "cross-check", "reciprocity"],

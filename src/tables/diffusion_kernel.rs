@@ -9,7 +9,7 @@
 //! the least length of the profile. Gaussians are closed forms.
 
 use super::profile::{self, Profile, Rgb};
-use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS, Sums, line};
@@ -49,7 +49,7 @@ pub static INFO: TableInfo = TableInfo {
             ],
         },
     ],
-    extra: &[],
+    mix: Mix::Layouts,
     model: ModelUse::None,
     params: profile::PARAMS,
     laws: &["finite", "range", "total", "monotone"],

@@ -1,7 +1,7 @@
 //! Radial diffusion profiles over the distance: per area, per ring, and as a cumulative distribution.
 
 use super::profile::{self, Profile};
-use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
@@ -51,7 +51,7 @@ pub static INFO: TableInfo = TableInfo {
             ],
         },
     ],
-    extra: &[],
+    mix: Mix::Layouts,
     model: ModelUse::None,
     params: &PARAMS,
     laws: &["finite", "range", "total", "monotone"],

@@ -1,9 +1,9 @@
 //! Radii with the density of a diffusion profile: the inverse of its cumulative distribution.
 
 use super::profile::{self, Profile};
-use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
-use crate::grid::{Axis, Quantity, Texel};
+use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::math::root::solve;
 use crate::terms::burley_diffusion;
@@ -27,7 +27,7 @@ pub static INFO: TableInfo = TableInfo {
             ChannelInfo { id: "radius.b", meaning: "r(u), mm, blue", range: [0.0, 3.4e38] },
         ],
     }],
-    extra: &[],
+    mix: Mix::Free(&[]),
     model: ModelUse::None,
     params: profile::PARAMS,
     laws: &["finite", "range", "monotone"],
@@ -37,7 +37,7 @@ pub static INFO: TableInfo = TableInfo {
 };
 
 fn default_axes() -> Vec<Axis> {
-    let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([0.0, 0.999]);
+    let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([0.0, 0.999]).warped(Warp::OneMinusPower(0.25));
     Quantity::find("u").map(axis).into_iter().collect()
 }
 

@@ -1,6 +1,6 @@
 //! Reflectance of a smooth dielectric interface over angle and relative index, from one side or both.
 
-use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
@@ -53,7 +53,7 @@ pub static INFO: TableInfo = TableInfo {
             ],
         },
     ],
-    extra: &[],
+    mix: Mix::Free(&[]),
     model: ModelUse::None,
     params: &[],
     laws: &["finite", "range", "fresnel-reversible"],

@@ -9,7 +9,7 @@
 //! by Nelder and Mead in their logarithms, weights by non-negative least squares within.
 
 use super::profile::{self, Profile, Rgb};
-use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::{Estimate, MAX_CHANNELS, gauss};
@@ -57,7 +57,7 @@ pub static INFO: TableInfo = TableInfo {
             ],
         },
     ],
-    extra: &[],
+    mix: Mix::Free(&[]),
     model: ModelUse::None,
     params: profile::PARAMS,
     laws: &["finite", "range", "total"],
@@ -139,23 +139,32 @@ struct Problem {
 #[must_use]
 pub fn fit(profile: &Profile, count: usize) -> Fit {
     let problem = Problem::new(profile);
-    let ends = [0.05, 0.97].map(|part| radius(profile, part));
-    let step = if count > 1 { libm::log(ends[1] / ends[0]) * 2.0 / (count - 1) as f64 } else { 1.0 };
-    let start: Vec<f64> = (0..count)
-        .map(|i| {
-            let first = if count > 1 { ends[0] } else { (ends[0] * ends[1]).sqrt() };
-            libm::log(0.5 * first * first) + i as f64 * step
-        })
-        .collect();
-    let best = simplex::minimise(&start, 0.4 * step, 4, 250 * count, &mut |logs| {
-        problem.solve(logs).1.iter().map(|r| r * r).sum()
-    });
-    let mut logs = best;
+    let mut squares = |logs: &[f64]| problem.solve(logs).1.iter().map(|r| r * r).sum();
+    // there are several minima: begin with narrow Gaussians, with narrower ones, and take the best
+    let mut best: Option<(f64, Vec<f64>)> = None;
+    for narrow in [0.05, 0.01, 0.002] {
+        let ends = [narrow, 0.97].map(|part| radius(profile, part));
+        let found = simplex::minimise(&start(ends, count), 0.3, 4, 250 * count, &mut squares);
+        let value = squares(&found);
+        if best.as_ref().is_none_or(|b| value < b.0) {
+            best = Some((value, found));
+        }
+    }
+    let mut logs = best.map_or_else(|| vec![0.0; count], |b| b.1);
     logs.sort_by(f64::total_cmp);
     let (weights, residual) = problem.solve(&logs);
     let lobes =
         logs.iter().enumerate().map(|(i, v)| (libm::exp(*v), [0, 1, 2].map(|c| weights[c][i]))).collect();
     Fit { lobes, residual }
+}
+
+/// Logarithms of variances, evenly spread between those whose Gaussians are at their height at two radii.
+fn start(ends: [f64; 2], count: usize) -> Vec<f64> {
+    if count == 1 {
+        return vec![libm::log(ends[0] * ends[1])];
+    }
+    let (first, step) = (2.0 * libm::log(ends[0]), 2.0 * libm::log(ends[1] / ends[0]) / (count - 1) as f64);
+    (0..count).map(|i| first + i as f64 * step).collect()
 }
 
 /// Smallest or largest radius of the channels inside which a part of the light leaves, to a few percent.

@@ -5,7 +5,7 @@
 
 use super::integral::{Functional, integrate};
 use super::sweep::Sweep;
-use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::Axis;
 use crate::integrate::{BATCH, Estimate, MAX_CHANNELS, Nodes, Sums, View, adaptive, ladder};
@@ -41,7 +41,7 @@ pub static INFO: TableInfo = TableInfo {
             channels: &[VISIBLE],
         },
     ],
-    extra: &[],
+    mix: Mix::Free(&[]),
     model: ModelUse::Split("ggx"),
     params: &[
         Param::choice(

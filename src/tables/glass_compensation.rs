@@ -13,7 +13,7 @@ use super::average_albedo::{Range, average_of};
 use super::memo::Memo;
 use super::sides::{crossing, reflected};
 use super::sweep::Sweep;
-use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS, View};
@@ -54,7 +54,7 @@ pub static INFO: TableInfo = TableInfo {
             channels: &[MISSING, MISSING_INSIDE, AVG, AVG_INSIDE, REFLECT, REFLECT_INSIDE],
         },
     ],
-    extra: &[],
+    mix: Mix::Free(&[]),
     model: ModelUse::Any("ggx-glass"),
     params: &[],
     laws: &["finite", "range", "reciprocity", "complement"],

@@ -3,7 +3,7 @@
 //! A shader reads `PH = (2 texel)^10` and shades `max(PH F / |L + V|^2, 0) * ndotl * rho_s`. PH is pi D: it has no
 //! 1 / pi, as the chapter's lights carry it.
 
-use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::{Estimate, MAX_CHANNELS};
@@ -24,7 +24,7 @@ pub static INFO: TableInfo = TableInfo {
         doc: "PH = (2 texel)^10",
         channels: &[ChannelInfo { id: "kelemen.texel", meaning: "0.5 PH(mu_m, m)^0.1", range: [0.0, 1.0] }],
     }],
-    extra: &[],
+    mix: Mix::Free(&[]),
     model: ModelUse::None,
     params: &[],
     laws: &["finite", "range"],

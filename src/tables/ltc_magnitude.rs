@@ -4,7 +4,7 @@
 
 use super::integral::{Functional, integrate};
 use super::sweep::Sweep;
-use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::{Axis, Direction, Grid, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
@@ -49,7 +49,7 @@ pub static INFO: TableInfo = TableInfo {
             channels: &[MAGNITUDE, FRESNEL, ZERO, SPHERE],
         },
     ],
-    extra: &[],
+    mix: Mix::Free(&[]),
     model: ModelUse::Any("ggx"),
     params: &[],
     laws: &["finite", "range", "energy", "cross-check", "reciprocity"],

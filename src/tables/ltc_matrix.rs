@@ -5,7 +5,7 @@
 
 use super::ltc_fit::{self, Family, Fitted};
 use super::sweep::Sweep;
-use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError, finite};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError, finite};
 use crate::cite;
 use crate::grid::provenance::{Residual, Spread};
 use crate::grid::table::{Extreme, Table};
@@ -79,10 +79,10 @@ pub static INFO: TableInfo = TableInfo {
             ],
         },
     ],
-    extra: &[
+    mix: Mix::Free(&[
         ChannelInfo { id: "ltc.sheared-l3", meaning: "as ltc.l3, of the sheared lobe", range: [0.0, 2.0] },
         unit("ltc.sheared-variation", "as ltc.variation, of the sheared lobe"),
-    ],
+    ]),
     model: ModelUse::Any("ggx"),
     params: &[],
     laws: &["range", "lobe", "reciprocity"],

@@ -4,23 +4,32 @@
 
 pub mod albedo;
 pub mod average_albedo;
+pub mod beer_lambert;
+pub mod blackbody;
 pub mod compensation;
 pub mod dfg;
 pub mod diffusion_kernel;
 pub mod diffusion_profile;
 pub mod diffusion_sampling;
 pub mod driver;
+pub mod fresnel_conductor;
 pub mod fresnel_dielectric;
+pub mod fresnel_schlick;
 pub mod gaussian_fit;
 pub mod generalised_schlick;
 pub mod glass_compensation;
+pub mod importance;
 pub mod integral;
 pub mod kelemen_beckmann;
 pub mod ltc_fit;
 pub mod ltc_magnitude;
 pub mod ltc_matrix;
+pub mod masking;
 mod memo;
+pub mod merl;
 pub mod ndf;
+pub mod phase_function;
+pub mod phase_sampling;
 pub mod preintegrated_skin;
 pub mod profile;
 pub mod selection;
@@ -28,7 +37,10 @@ pub mod sheen_scaling;
 mod sides;
 pub mod skin_transmittance;
 pub mod spec;
+pub mod spectrum;
 pub mod sweep;
+pub mod thin_film;
+pub mod visibility;
 
 use crate::cite::Cite;
 use crate::grid::provenance::Residual;
@@ -48,7 +60,12 @@ pub static TABLES: &[&TableInfo] = &[
     &generalised_schlick::INFO,
     &sheen_scaling::INFO,
     &fresnel_dielectric::INFO,
+    &fresnel_conductor::INFO,
+    &fresnel_schlick::INFO,
+    &thin_film::INFO,
     &ndf::INFO,
+    &masking::INFO,
+    &visibility::INFO,
     &kelemen_beckmann::INFO,
     &ltc_matrix::INFO,
     &ltc_magnitude::INFO,
@@ -58,6 +75,12 @@ pub static TABLES: &[&TableInfo] = &[
     &diffusion_sampling::INFO,
     &gaussian_fit::INFO,
     &skin_transmittance::INFO,
+    &phase_function::INFO,
+    &phase_sampling::INFO,
+    &beer_lambert::INFO,
+    &blackbody::INFO,
+    &importance::INFO,
+    &merl::INFO,
 ];
 
 /// A table kind bound to a model, parameters and axes: computes one texel. Pure: no threads, no clamps, no output.
@@ -158,6 +181,26 @@ impl ChannelInfo {
     }
 }
 
+/// Which channels of a kind may stand together in a table.
+#[derive(Debug, Clone, Copy)]
+pub enum Mix {
+    /// Those of one layout, in its order: the layouts are different integrals.
+    Layouts,
+    /// Any of all layouts, and these besides.
+    Free(&'static [ChannelInfo]),
+}
+
+impl Mix {
+    /// Channels that are in no layout.
+    #[must_use]
+    pub fn extra(&self) -> &'static [ChannelInfo] {
+        match self {
+            Mix::Layouts => &[],
+            Mix::Free(extra) => extra,
+        }
+    }
+}
+
 /// What a table kind wants of a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ModelUse {
@@ -184,8 +227,8 @@ pub struct TableInfo {
     pub coordinates: &'static [&'static str],
     /// Channel layouts; the first is the default.
     pub layouts: &'static [Layout],
-    /// Channels that are in no layout; a recipe picks them by `channels`.
-    pub extra: &'static [ChannelInfo],
+    /// Which channels may stand together.
+    pub mix: Mix,
     /// What it wants of a model.
     pub model: ModelUse,
     /// Parameters of its own.
@@ -205,7 +248,7 @@ impl TableInfo {
     #[must_use]
     pub fn pool(&self) -> Vec<ChannelInfo> {
         let mut pool: Vec<ChannelInfo> = Vec::new();
-        for channel in self.layouts.iter().flat_map(|l| l.channels).chain(self.extra) {
+        for channel in self.layouts.iter().flat_map(|l| l.channels).chain(self.mix.extra()) {
             if pool.iter().all(|c| c.id != channel.id) {
                 pool.push(*channel);
             }

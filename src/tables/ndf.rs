@@ -1,6 +1,6 @@
 //! The microfacet distribution over the cosine of the microfacet normal and the width.
 
-use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
@@ -29,7 +29,7 @@ pub static INFO: TableInfo = TableInfo {
             channels: &[ChannelInfo { id: "ndf.d", meaning: "D(mu_m), 1/sr", range: [0.0, 3.4e38] }],
         },
     ],
-    extra: &[],
+    mix: Mix::Free(&[]),
     model: ModelUse::None,
     params: &[Param::choice("distribution", "which distribution", &["ggx", "beckmann"])],
     laws: &["finite", "range", "normalised"],

@@ -17,7 +17,7 @@
 //! Integrals run over the angle, split at the kinks of the clamped cosine and at the scales of the profile.
 
 use super::profile::{self, Profile, Rgb};
-use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::{Estimate, MAX_CHANNELS, Sums, line};
@@ -46,7 +46,7 @@ pub static INFO: TableInfo = TableInfo {
             ChannelInfo { id: "skin.b", meaning: "D of blue light", range: [0.0, 1.0] },
         ],
     }],
-    extra: &[],
+    mix: Mix::Free(&[]),
     model: ModelUse::None,
     params: &PARAMS,
     laws: &["finite", "range", "total"],
@@ -63,8 +63,10 @@ static PARAMS: [Param; 1 + profile::PARAMS.len()] = profile::with(Param::choice(
 ));
 
 fn default_axes() -> Vec<Axis> {
-    let axis = |id: &str, domain| Quantity::find(id).map(|q| Axis::new(q, 128, Texel::Endpoint).over(domain));
-    [axis("ndotl", [-1.0, 1.0]), axis("curvature", [0.0, 1.0])].into_iter().flatten().collect()
+    // odd, so that the terminator, a kink where nothing is curved, lies on a texel: four times better than 128
+    let axis =
+        |id: &str, len, domain| Quantity::find(id).map(|q| Axis::new(q, len, Texel::Endpoint).over(domain));
+    [axis("ndotl", 129, [-1.0, 1.0]), axis("curvature", 128, [0.0, 1.0])].into_iter().flatten().collect()
 }
 
 struct Skin {

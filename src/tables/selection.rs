@@ -64,6 +64,9 @@ impl Selection {
         let chosen = choose(kind, channels)?;
         let same = |l: &&Layout| l.channels.iter().map(|c| c.id).eq(chosen.iter().map(|c| c.id));
         let layout = kind.layouts.iter().find(same);
+        if layout.is_none() && matches!(kind.mix, super::Mix::Layouts) {
+            return Err(BindError::NoMix { kind: kind.id });
+        }
         Ok(layout
             .map_or_else(|| Selection { id: CUSTOM, doc: "", channels: chosen.clone() }, Selection::from))
     }

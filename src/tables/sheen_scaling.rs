@@ -5,7 +5,7 @@
 
 use super::integral::{Functional, integrate};
 use super::sweep::Sweep;
-use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::{Axis, Texel};
 use crate::integrate::{Estimate, MAX_CHANNELS};
@@ -35,7 +35,7 @@ pub static INFO: TableInfo = TableInfo {
         Layout { id: "e", doc: "albedo of the sheen: base *= 1 - max(sheen colour) * e", channels: &[E] },
         Layout { id: "e-scaling", doc: "both", channels: &[E, SCALING] },
     ],
-    extra: &[],
+    mix: Mix::Free(&[]),
     model: ModelUse::Any("charlie"),
     params: &[Param::number(
         "sheen",

@@ -4,9 +4,9 @@
 //! `sqrt(r^2 + d^2)`: `T(d) = 2 pi int R(sqrt(r^2 + d^2)) r dr`, which is the part of the profile beyond radius d.
 
 use super::profile::{self, Profile};
-use super::{Baker, BindError, ChannelInfo, Layout, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
 use crate::cite;
-use crate::grid::{Axis, Quantity, Texel};
+use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use std::f64::consts::SQRT_2;
 
@@ -34,7 +34,7 @@ pub static INFO: TableInfo = TableInfo {
             channels: CHANNELS,
         },
     ],
-    extra: &[],
+    mix: Mix::Layouts,
     model: ModelUse::None,
     params: profile::PARAMS,
     laws: &["finite", "range", "monotone"],
@@ -45,7 +45,7 @@ pub static INFO: TableInfo = TableInfo {
 };
 
 fn default_axes() -> Vec<Axis> {
-    let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([0.0, 8.0]);
+    let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([0.0, 8.0]).warped(Warp::Power(0.5));
     Quantity::find("thickness").map(axis).into_iter().collect()
 }
 

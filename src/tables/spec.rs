@@ -83,6 +83,12 @@ pub enum BindError {
         /// How many there may be.
         max: usize,
     },
+    /// Channels of different layouts in a kind whose layouts are different integrals.
+    #[error("table {kind}: its channels stand together only as one of its layouts")]
+    NoMix {
+        /// Table kind.
+        kind: &'static str,
+    },
     /// Two answers to one question.
     #[error("table {kind}: `layout` and `channels` are both given")]
     LayoutAndChannels {

@@ -2,10 +2,13 @@
 //!
 //! The sums are taken over fresh values at the nodes of another rule, in another variable than the baker's.
 
-use super::{Case, Law, Outcome};
+use super::{Case, Law, Outcome, seeds};
 use crate::integrate::{Sums, line};
+use crate::tables::integral::{Functional, integrate};
+use crate::tables::phase_function::Phase;
 use crate::tables::profile::Profile;
-use crate::tables::{Baker, diffusion_profile};
+use crate::tables::sweep::Sweep;
+use crate::tables::{Baker, diffusion_profile, importance, place};
 use std::f64::consts::PI;
 
 /// The law.
@@ -13,7 +16,7 @@ pub static LAW: Law = Law {
     id: "total",
     statement: "the integral over the whole domain is what the formula promises (a mean, an albedo, 1)",
     margin: "the errors of both sides minus the difference, over the rows of the table that were checked",
-    code: 2005,
+    code: 2006,
     check,
 };
 
@@ -29,6 +32,8 @@ fn check(case: &Case<'_>) -> Outcome {
         "diffusion-profile" => radial(case),
         "diffusion-kernel" => kernel(case),
         "gaussian-fit" => weights(case),
+        "phase-function" => sphere(case),
+        "importance" => albedo(case),
         _ => Outcome::vacuous("nothing to add up"),
     }
 }
@@ -86,6 +91,52 @@ fn kernel(case: &Case<'_>) -> Outcome {
     let sum = add_up(&*case.bound.baker, &outwards(&profile), 3, case.tolerance, |x| (vec![x], 2.0));
     let mut outcome = Outcome::start();
     tighten(&mut outcome, &sum, 0..3, 1.0, || "all offsets".to_owned());
+    outcome
+}
+
+/// `2 pi int p sin theta dtheta = 1`, of the density also where the table holds it relative to its peak.
+fn sphere(case: &Case<'_>) -> Outcome {
+    let spec = &case.bound.spec;
+    let axis = spec.axis("g");
+    let values: Vec<Option<f64>> = axis.map_or(vec![None], |i| rows(case, i).into_iter().map(Some).collect());
+    let mut outcome = Outcome::start();
+    for g in values {
+        let phase = Phase::new(&spec.params, g);
+        let peak = if spec.layout.id == "relative" { phase.largest() } else { 1.0 };
+        let deflection = spec.axis("deflection").unwrap_or(0);
+        // peaks are as narrow as 1 - |g|, on either side
+        let near = [0.0, 1e-4, 1e-3, 1e-2, 0.1, 0.5];
+        let breaks: Vec<f64> =
+            near.into_iter().chain([PI / 2.0]).chain(near.into_iter().rev().map(|x| PI - x)).collect();
+        let sum = add_up(&*case.bound.baker, &breaks, 1, 1e-10, |theta| {
+            let mut at = vec![0.0; spec.grid.axes().len()];
+            if let (Some(i), Some(g)) = (axis, g) {
+                at[i] = g;
+            }
+            at[deflection] = theta;
+            (at, 2.0 * PI * libm::sin(theta) * peak)
+        });
+        tighten(&mut outcome, &sum, 0..1, 1.0, || g.map_or("all angles".to_owned(), |g| format!("g = {g}")));
+    }
+    outcome
+}
+
+/// What the marginal density adds up to is the directional albedo, by the model's own chart; at [`ROWS`] texels.
+fn albedo(case: &Case<'_>) -> Outcome {
+    let Ok(sweep) = Sweep::new(&case.bound.spec, false) else { return Outcome::vacuous("no model") };
+    let mut outcome = Outcome::start();
+    for texel in seeds::texels(case.table, ROWS, 0x1a9b) {
+        let point = case.table.grid.texel(texel);
+        let Ok(model) = sweep.model(point.values()) else { continue };
+        let view = sweep.view(point.values());
+        let marginal = importance::marginal(&*model, view, 1e-5);
+        let Ok(chart) = integrate(&*model, view, &[Functional::One], 1e-5) else { continue };
+        let (a, b) = (marginal.total, chart.value[0]);
+        let error = marginal.error + chart.error[0] + ROUNDING;
+        outcome.tighten(error - (a - b).abs(), || {
+            format!("{a:.9} against {b:.9}, {}", place(&case.table.grid, texel))
+        });
+    }
     outcome
 }
 

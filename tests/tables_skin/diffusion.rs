@@ -95,8 +95,8 @@ fn a_dipole_integrates_to_its_total() {
 
 #[test]
 fn kernels_are_line_integrals() {
-    // profile burley: a Bessel function, K0(1) and K0(1/3) with 16 digits from tables of A & S 9.8 (mpmath: besselk(0, x))
-    let (k0_1, k0_third) = (0.421_024_438_240_708_33, 1.264_846_229_873_374_6);
+    // profile burley: a Bessel function, K0(1) and K0(1/3) from mpmath (besselk)
+    let (k0_1, k0_third) = (0.421_024_438_240_708_33, 1.276_584_366_893_580_1);
     let params = r#"{"profile": "burley", "fit": "searchlight", "albedo_r": 0.8, "length_r": 1.05}"#;
     // s(0.8) = 1.05, so l/s = 1 and x = r
     let line_table = table("diffusion-kernel", "line", params, &[("offset", 0.0, FAR)]);
@@ -139,8 +139,8 @@ fn transmittances_agree_with_high_precision_values() {
     for d in [0.1, 1.0, 4.0] {
         let sum = line::integrate(&[0.0, 1.0, 10.0, 100.0, 1000.0], 3, 1e-12, &mut |r, out| {
             let at = texel(&area, &[libm::hypot(r, d)], 1e-9);
-            for c in 0..3 {
-                out[c] = 2.0 * std::f64::consts::PI * r * at.value[c];
+            for (out, v) in out.iter_mut().zip(at.value) {
+                *out = 2.0 * std::f64::consts::PI * r * v;
             }
         });
         for c in 0..3 {
@@ -194,7 +194,9 @@ fn a_sum_of_gaussians_is_fitted_by_itself() {
 
 #[test]
 fn fits_improve_with_their_number_and_keep_the_energy() {
-    for params in ["{}", BURLEY, DIPOLE] {
+    // What six leave of normalised diffusion, which grows as 1/r where Gaussians are flat: the best of four random starts
+    // of scipy's nnls and Nelder-Mead found 0.156103.
+    for (params, six) in [("{}", 1e-3), (BURLEY, 0.15612), (DIPOLE, 0.01)] {
         let profile = profile(params);
         let mut before = f64::INFINITY;
         for count in [1, 2, 4, 6] {
@@ -208,7 +210,7 @@ fn fits_improve_with_their_number_and_keep_the_energy() {
             assert!(residual < 0.8 * before, "{params} {count}: {residual} after {before}");
             before = residual;
         }
-        assert!(before < 0.05, "{params}: six Gaussians leave {before}");
+        assert!(before < six, "{params}: six Gaussians leave {before}");
     }
 }
 

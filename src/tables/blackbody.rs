@@ -1,0 +1,124 @@
+//! The colour of a black body over its temperature: fire, lava, lamps.
+
+use super::spectrum::{self, Spectrum};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use crate::cite;
+use crate::grid::{Axis, Quantity, Texel};
+use crate::integrate::{Estimate, MAX_CHANNELS};
+use crate::models::{Param, Preset};
+use crate::terms::blackbody::{planck, wyman_xyz};
+
+const fn colour(id: &'static str, meaning: &'static str, range: [f64; 2]) -> ChannelInfo {
+    ChannelInfo { id, meaning, range }
+}
+
+const HUE: [f64; 2] = [0.0, 8.0];
+const RAW: [f64; 2] = [-2.0, 8.0];
+const BRIGHT: [f64; 2] = [0.0, 3.4e38];
+
+/// Registry entry.
+pub static INFO: TableInfo = TableInfo {
+    id: "blackbody",
+    title: "Black-body colour ramp",
+    formula: "int B(lambda, T) (x, y, z) dlambda to linear sRGB, divided by its Y; B = 2 h c^2 / lambda^5 / (exp(h c / (lambda k T)) - 1)",
+    sources: &[
+        (cite::PLANCK_1901, "with the exact SI constants of 2019"),
+        (cite::WYMAN_2013, "Eq. 4"),
+        (cite::LINDBLOOM, "XYZ to sRGB (D65)"),
+    ],
+    coordinates: &["temperature"],
+    layouts: &[
+        Layout {
+            id: "hue",
+            doc: "linear sRGB of luminance 1, negative blue (below 1900 K) cut to 0",
+            channels: &[
+                colour("blackbody.r", "red at Y = 1", HUE),
+                colour("blackbody.g", "green at Y = 1", HUE),
+                colour("blackbody.b", "blue at Y = 1, at least 0", HUE),
+            ],
+        },
+        Layout {
+            id: "hue-unclamped",
+            doc: "the same as the matrix gives it",
+            channels: &[
+                colour("blackbody.r", "red at Y = 1", RAW),
+                colour("blackbody.g", "green at Y = 1", RAW),
+                colour("blackbody.b", "blue at Y = 1", RAW),
+            ],
+        },
+        Layout {
+            id: "light",
+            doc: "hue times the luminance, relative to that at the reference temperature",
+            channels: &[
+                colour("blackbody.r", "red times Y(T) / Y(reference)", BRIGHT),
+                colour("blackbody.g", "green times Y(T) / Y(reference)", BRIGHT),
+                colour("blackbody.b", "blue times Y(T) / Y(reference)", BRIGHT),
+            ],
+        },
+    ],
+    mix: Mix::Layouts,
+    model: ModelUse::None,
+    params: &[Param {
+        unit: "K",
+        ..Param::number(
+            "reference",
+            "T_0",
+            "of layout light: temperature of luminance 1",
+            [500.0, 1e6],
+            Preset::Value(2000.0),
+        )
+    }],
+    laws: &["range"],
+    axes: default_axes,
+    notes: "Fire is 1000 to 2000 K, a lamp 2856, daylight about 6500. Below 800 K the fit of the eye in the far red decides the hue.",
+    bind,
+};
+
+fn default_axes() -> Vec<Axis> {
+    let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([1000.0, 12000.0]);
+    Quantity::find("temperature").map(axis).into_iter().collect()
+}
+
+struct Table {
+    temperature: usize,
+    layout: &'static str,
+    /// Luminance at the reference temperature.
+    reference: f64,
+    spectrum: &'static Spectrum,
+}
+
+fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
+    Ok(Box::new(Table {
+        temperature: spec.coordinate("temperature")?,
+        layout: spec.layout.id,
+        reference: luminance(spec.params.number("reference")),
+        spectrum: spectrum::plain(),
+    }))
+}
+
+/// `int B y dlambda`, W/(sr m²) with lambda in nm as everywhere here, by the highest order of the spectrum's rules.
+fn luminance(temperature: f64) -> f64 {
+    spectrum::plain().integral(&mut |lambda| planck(lambda, temperature) * wyman_xyz(lambda)[1])
+}
+
+impl Baker for Table {
+    fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
+        let temperature = at[self.temperature];
+        let y = luminance(temperature);
+        let factor = if self.layout == "light" { y / self.reference } else { 1.0 };
+        let mut e =
+            self.spectrum.colour(tolerance / factor.max(1.0), &mut |lambda| planck(lambda, temperature) / y);
+        let mut value = [0.0; MAX_CHANNELS];
+        for (c, out) in value.iter_mut().enumerate().take(3) {
+            let v = e.value[c] * factor;
+            *out = if self.layout == "hue-unclamped" || v.is_nan() { v } else { v.max(0.0) };
+            e.error[c] = e.error[c] * factor + 1e-13 * v.abs();
+        }
+        e.value = value;
+        super::finite(e, 3)
+    }
+
+    fn rule(&self) -> String {
+        spectrum::RULE.to_owned()
+    }
+}

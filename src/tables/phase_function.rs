@@ -1,0 +1,161 @@
+//! Phase functions over the angle of deflection.
+
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use crate::cite::{self, Cite};
+use crate::grid::{Axis, Quantity, Texel};
+use crate::integrate::{Estimate, MAX_CHANNELS};
+use crate::models::{Param, Params, Preset};
+use crate::terms::phase;
+
+/// Parameters: which phase function, and its numbers.
+pub(super) const PARAMS: &[Param] = &[
+    Param::choice(
+        "phase",
+        "Henyey and Greenstein, Rayleigh, Draine, the fit of fog and cloud, or isotropic",
+        &["henyey-greenstein", "rayleigh", "draine", "fog", "isotropic"],
+    ),
+    Param::number(
+        "g",
+        "g",
+        "of henyey-greenstein and draine: asymmetry",
+        [-0.999, 0.999],
+        Preset::Value(0.75),
+    ),
+    Param::number("draine_alpha", "alpha", "of draine: weight of cos^2", [0.0, 100.0], Preset::Value(1.0)),
+    Param {
+        unit: "um",
+        ..Param::number("diameter", "d", "of fog: diameter of the droplets", [5.0, 50.0], Preset::Value(10.0))
+    },
+];
+
+/// Sources of the phase functions.
+pub(super) const SOURCES: &[(Cite, &str)] = &[
+    (cite::HENYEY_GREENSTEIN_1941, "Eq. 2"),
+    (cite::BORN_WOLF_1999, "section 14.5 (Rayleigh)"),
+    (cite::DRAINE_2003, "Eq. 5 (number recalled)"),
+    (cite::JENDERSIE_DEON_2023, "Eq. 7 to 10 (fog)"),
+];
+
+/// Registry entry.
+pub static INFO: TableInfo = TableInfo {
+    id: "phase-function",
+    title: "Phase function",
+    formula: "p(theta), 2 pi int p sin theta dtheta = 1",
+    sources: SOURCES,
+    coordinates: &["deflection"],
+    layouts: &[
+        Layout {
+            id: "density",
+            doc: "scattered radiance per incident radiance, per steradian",
+            channels: &[ChannelInfo { id: "phase", meaning: "p(theta), 1/sr", range: [0.0, 3.4e38] }],
+        },
+        Layout {
+            id: "relative",
+            doc: "p / p_max, p_max the largest value over all angles (stated by `rule` in the file)",
+            channels: &[ChannelInfo { id: "phase.relative", meaning: "p(theta) / p_max", range: [0.0, 1.0] }],
+        },
+    ],
+    mix: Mix::Layouts,
+    model: ModelUse::None,
+    params: PARAMS,
+    laws: &["finite", "range", "total"],
+    axes: default_axes,
+    notes: "theta is the angle between the directions of travel: 0 is forward. Some renderers pass the cosine of two directions that both point away, \
+        which has the other sign. Axes: deflection, and g.",
+    bind,
+};
+
+fn default_axes() -> Vec<Axis> {
+    Quantity::find("deflection").map(|q| Axis::new(q, 256, Texel::Endpoint)).into_iter().collect()
+}
+
+/// A phase function with its parameters.
+#[derive(Debug, Clone)]
+pub struct Phase {
+    id: &'static str,
+    g: f64,
+    alpha: f64,
+    diameter: f64,
+}
+
+impl Phase {
+    /// From the parameters of a table kind; `g` from an axis, if one sweeps it.
+    #[must_use]
+    pub fn new(params: &Params, g: Option<f64>) -> Phase {
+        Phase {
+            id: params.choice("phase"),
+            g: g.unwrap_or_else(|| params.number("g")),
+            alpha: params.number("draine_alpha"),
+            diameter: params.number("diameter"),
+        }
+    }
+
+    /// The density at an angle, 1/sr; `1 - cos` is formed without a difference.
+    #[must_use]
+    pub fn at(&self, theta: f64) -> f64 {
+        let half = libm::sin(0.5 * theta);
+        let (below, cos) = (2.0 * half * half, libm::cos(theta));
+        let hg = |g| phase::henyey_greenstein_at(g, below);
+        match self.id {
+            "rayleigh" => phase::rayleigh(cos),
+            "draine" => {
+                hg(self.g) * (1.0 + self.alpha * cos * cos)
+                    / (1.0 + self.alpha * (1.0 + 2.0 * self.g * self.g) / 3.0)
+            }
+            "fog" => phase::fog(self.diameter, cos),
+            "isotropic" => phase::isotropic(),
+            _ => hg(self.g),
+        }
+    }
+
+    /// The largest value: at one of the ends for all of them.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
+        self.at(0.0).max(self.at(std::f64::consts::PI))
+    }
+
+    /// The angle at which the part u of the light lies beyond: `2 pi int_theta^pi p sin = u`, so u = 1 is forward.
+    #[must_use]
+    pub fn sample(&self, u: f64) -> f64 {
+        let cos = match self.id {
+            "rayleigh" => phase::sample_rayleigh(u),
+            "draine" => phase::sample_draine(self.g, self.alpha, u),
+            "fog" => phase::fog_quantile(self.diameter, u),
+            "isotropic" => 2.0 * u - 1.0,
+            _ => phase::sample_henyey_greenstein(self.g, u),
+        };
+        cos.clamp(-1.0, 1.0)
+    }
+}
+
+struct Table {
+    deflection: usize,
+    g: Option<usize>,
+    params: Params,
+    relative: bool,
+}
+
+fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
+    Ok(Box::new(Table {
+        deflection: spec.coordinate("deflection")?,
+        g: spec.axis("g"),
+        params: spec.params.clone(),
+        relative: spec.layout.id == "relative",
+    }))
+}
+
+impl Baker for Table {
+    fn texel(&self, at: &[f64], _tolerance: f64) -> Result<Estimate, TexelError> {
+        let phase = Phase::new(&self.params, self.g.map(|i| at[i]));
+        let mut value = [0.0; MAX_CHANNELS];
+        value[0] = phase.at(at[self.deflection]) / if self.relative { phase.largest() } else { 1.0 };
+        super::closed_form(value, 1)
+    }
+
+    fn rule(&self) -> String {
+        if self.relative && self.g.is_none() {
+            return format!("closed form, divided by {:e} 1/sr", Phase::new(&self.params, None).largest());
+        }
+        "closed form".to_owned()
+    }
+}

@@ -1,0 +1,77 @@
+//! Angles with the density of a phase function: the inverse of its cumulative distribution.
+
+use super::phase_function::{PARAMS, Phase, SOURCES};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use crate::grid::{Axis, Quantity, Texel};
+use crate::integrate::{Estimate, MAX_CHANNELS};
+use crate::models::Params;
+use std::f64::consts::PI;
+
+/// Registry entry.
+pub static INFO: TableInfo = TableInfo {
+    id: "phase-sampling",
+    title: "Angles that sample a phase function",
+    formula: "cos theta(u) with 2 pi int_-1^cos theta p dcos = u",
+    sources: SOURCES,
+    coordinates: &["u"],
+    layouts: &[
+        Layout {
+            id: "cosine",
+            doc: "cosine of the deflection; the azimuth is 2 pi times a second number",
+            channels: &[ChannelInfo { id: "cos_theta", meaning: "cos theta(u)", range: [-1.0, 1.0] }],
+        },
+        Layout {
+            id: "angle",
+            doc: "the deflection itself, falling from pi to 0: finer near the peak",
+            channels: &[ChannelInfo { id: "theta", meaning: "theta(u), rad", range: [0.0, PI] }],
+        },
+    ],
+    mix: Mix::Layouts,
+    model: ModelUse::None,
+    params: PARAMS,
+    laws: &["range", "monotone"],
+    axes: default_axes,
+    notes: "u = 1 is forward. Axes: u, and g.",
+    bind,
+};
+
+fn default_axes() -> Vec<Axis> {
+    Quantity::find("u").map(|q| Axis::new(q, 256, Texel::Endpoint)).into_iter().collect()
+}
+
+struct Table {
+    u: usize,
+    g: Option<usize>,
+    params: Params,
+    angle: bool,
+}
+
+fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
+    Ok(Box::new(Table {
+        u: spec.coordinate("u")?,
+        g: spec.axis("g"),
+        params: spec.params.clone(),
+        angle: spec.layout.id == "angle",
+    }))
+}
+
+impl Baker for Table {
+    fn texel(&self, at: &[f64], _tolerance: f64) -> Result<Estimate, TexelError> {
+        let cos = Phase::new(&self.params, self.g.map(|i| at[i])).sample(at[self.u]);
+        let mut value = [0.0; MAX_CHANNELS];
+        value[0] = if self.angle { libm::acos(cos) } else { cos };
+        let mut e = Estimate::exact(value);
+        // roots are found to the rounding of the distribution; of the cosine, which near 0 or pi is more of the angle
+        let error = if self.params.choice("phase") == "fog" { 1e-12 } else { 1e-14 };
+        e.error[0] = if self.angle { error / libm::sin(value[0]).max(1e-7) } else { error };
+        super::finite(e, 1)
+    }
+
+    fn rule(&self) -> String {
+        match self.params.choice("phase") {
+            "draine" | "fog" => "Newton's method in a bracket on the closed cumulative distribution",
+            _ => "closed form",
+        }
+        .to_owned()
+    }
+}

@@ -1,0 +1,109 @@
+//! Iridescence: the colour of a surface under a thin film, over angle and thickness of the film.
+
+use super::spectrum::{self, Spectrum};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use crate::cite;
+use crate::grid::{Axis, Quantity, Texel};
+use crate::integrate::{Estimate, MAX_CHANNELS};
+use crate::models::{Param, Preset};
+use crate::terms::thin_film::{self, Film};
+
+const fn colour(id: &'static str, meaning: &'static str) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [-0.5, 1.5] }
+}
+
+/// Registry entry.
+pub static INFO: TableInfo = TableInfo {
+    id: "thin-film",
+    title: "Thin-film iridescence",
+    formula: "int R(lambda) D65 (x, y, z) dlambda to linear sRGB, R = |r12 + r23 e^(i delta)|^2 / |1 + r12 r23 e^(i delta)|^2, delta = 4 pi n2 d cos theta_2 / lambda",
+    sources: &[
+        (cite::BELCOUR_BARLA_2017, "section 3 (Airy), Eq. 6 to 10 (series; numbers recalled)"),
+        (cite::BORN_WOLF_1999, "section 7.6.1"),
+        (cite::WYMAN_2013, "Eq. 4"),
+        (cite::CIE_11664_2, "Table B.1, D65"),
+    ],
+    coordinates: &["mu", "film"],
+    layouts: &[
+        Layout {
+            id: "srgb",
+            doc: "linear sRGB of reflected daylight (D65), a perfect mirror being 1; integrated over the spectrum",
+            channels: &[
+                colour("film.r", "red of int R D65 (x, y, z) dlambda"),
+                colour("film.g", "green of it"),
+                colour("film.b", "blue of it"),
+            ],
+        },
+        Layout {
+            id: "series",
+            doc: "linear RGB of equal-energy white by the published series of a few orders, as renderers evaluate it",
+            channels: &[
+                colour("film.r", "red of the series"),
+                colour("film.g", "green of the series"),
+                colour("film.b", "blue of the series"),
+            ],
+        },
+    ],
+    mix: Mix::Layouts,
+    model: ModelUse::None,
+    params: &[
+        Param::number("n2", "n_2", "index of the film", [1.0, 10.0], Preset::Value(1.33)),
+        Param::number("n3", "n_3", "index below the film, real part", [0.0, 100.0], Preset::Value(1.5)),
+        Param::number("k3", "k_3", "extinction coefficient below the film", [0.0, 100.0], Preset::Value(0.0)),
+        Param::number("orders", "m", "of layout series: orders summed", [1.0, 100.0], Preset::Value(2.0)),
+    ],
+    laws: &["range"],
+    axes: default_axes,
+    notes: "Vacuum above, thickness in nm. Colours may leave [0, 1] a little: renderers clamp. Defaults: water on glass; soap n2 1.33 n3 1; \
+        oil on water n2 1.5 n3 1.33; anodised titanium n2 2.5 n3 2.5 k3 3.4. Fringes of films above 2 um are finer than most grids.",
+    bind,
+};
+
+fn default_axes() -> Vec<Axis> {
+    let axis =
+        |id: &str, len, domain| Quantity::find(id).map(|q| Axis::new(q, len, Texel::Endpoint).over(domain));
+    [axis("mu", 64, [0.0, 1.0]), axis("film", 256, [0.0, 1200.0])].into_iter().flatten().collect()
+}
+
+struct Table {
+    mu: usize,
+    film: usize,
+    substrate: Film,
+    /// Of the series; none integrates the spectrum.
+    orders: Option<u32>,
+    spectrum: &'static Spectrum,
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in [1, 100]")]
+fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
+    let number = |id: &str| spec.params.number(id);
+    if number("n3") + number("k3") <= 0.0 {
+        let why = "n3 and k3 are both 0: nothing can be".to_owned();
+        return Err(crate::models::ParamError::Together { model: spec.kind.id, why }.into());
+    }
+    Ok(Box::new(Table {
+        mu: spec.coordinate("mu")?,
+        film: spec.coordinate("film")?,
+        substrate: Film { n2: number("n2"), n3: number("n3"), k3: number("k3"), d_nm: 0.0 },
+        orders: (spec.layout.id == "series").then(|| number("orders").round() as u32),
+        spectrum: spectrum::daylight(),
+    }))
+}
+
+impl Baker for Table {
+    fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
+        let film = Film { d_nm: at[self.film], ..self.substrate };
+        let mu = at[self.mu];
+        if let Some(orders) = self.orders {
+            let mut value = [0.0; MAX_CHANNELS];
+            value[..3].copy_from_slice(&thin_film::rgb(&film, mu, orders));
+            return super::closed_form(value, 3);
+        }
+        let airy = &mut |lambda| thin_film::airy(&film, mu, lambda).unpolarised();
+        super::finite(self.spectrum.colour(tolerance, airy), 3)
+    }
+
+    fn rule(&self) -> String {
+        if self.orders.is_some() { "closed form" } else { spectrum::RULE }.to_owned()
+    }
+}

@@ -1,0 +1,185 @@
+//! Fresnel factors, films, masking: high-precision values, and colours from another program.
+
+use super::helpers::{close, rows, table, texel};
+use crate::common::{bake, request};
+use brdfbake::grid::{Axis, Quantity, Texel};
+use brdfbake::verify;
+
+const MU: (&str, f64, f64) = ("mu", 0.0, 1.0);
+
+#[test]
+fn conductors_agree_with_high_precision_values() {
+    for (name, channel) in [("fresnel_conductor_s", 0), ("fresnel_conductor_p", 3)] {
+        for row in rows("points_fresnel", name) {
+            let params =
+                format!(r#"{{"metal": "index", "n": {}, "k": {}}}"#, row.params["n"], row.params["k"]);
+            let bound = table("fresnel-conductor", "polarised", &params, &[MU]);
+            let e = texel(&bound, &[libm::cos(row.angle)], 1e-9);
+            close(&row.name, e.value[channel], row.value, 1e-13);
+            close(&row.name, e.value[channel + 2], row.value, 1e-13);
+        }
+    }
+    // n and k on axes
+    let axes = [MU, ("n", 0.0, 4.0), ("k", 0.0, 100.0)];
+    let bound = table("fresnel-conductor", "rgb", r#"{"metal": "index"}"#, &axes);
+    for row in rows("points_fresnel", "fresnel_conductor_unpolarised") {
+        let at = [libm::cos(row.angle), row.num("n"), row.num("k")];
+        close(&row.name, texel(&bound, &at, 1e-9).value[1], row.value, 1e-13);
+    }
+}
+
+/// Linear sRGB by another program: numpy, textbook complex amplitudes, Simpson's rule at 94 000 wavelengths.
+const GOLD: &[(f64, [f64; 3])] = &[
+    (1.0, [1.035_571_976_21, 0.729_528_037_087, 0.364_362_118_041]),
+    (0.5, [1.018_162_046_15, 0.739_107_701_013, 0.400_715_738_293]),
+    (0.1, [0.991_353_957_042, 0.893_330_120_84, 0.724_134_404_968]),
+    (0.02, [0.998_225_550_071, 0.976_293_144_134, 0.931_968_273_836]),
+];
+
+#[test]
+fn gold_is_what_another_program_computes() {
+    let bound = table("fresnel-conductor", "srgb", r#"{"metal": "au"}"#, &[MU]);
+    for (mu, expected) in GOLD {
+        for tolerance in [1e-3, 2.4e-4, 1e-6] {
+            let e = texel(&bound, &[*mu], tolerance);
+            for (c, x) in expected.iter().enumerate() {
+                close(&format!("{mu} {tolerance:e}"), e.value[c], *x, tolerance);
+                close(&format!("{mu} {tolerance:e} estimate"), e.value[c], *x, e.error[c] + 1e-10);
+            }
+        }
+    }
+}
+
+/// n2, n3, k3, thickness, cosine, colour.
+type Coloured = (f64, f64, f64, f64, f64, [f64; 3]);
+
+/// As [`GOLD`].
+const FILMS: &[Coloured] = &[
+    (1.33, 1.5, 0.0, 0.0, 1.0, [0.04, 0.04, 0.04]),
+    (1.33, 1.5, 0.0, 400.0, 1.0, [0.016_798_289_517_6, 0.039_863_027_688_1, 0.013_567_438_918_8]),
+    (1.5, 1.33, 0.0, 550.0, 0.5, [0.075_968_384_480_7, 0.121_100_826_785, 0.065_518_992_687_7]),
+    (1.33, 1.5, 0.0, 1200.0, 0.25, [0.198_902_080_101, 0.242_562_889_924, 0.231_648_973_634]),
+    (2.5, 2.5, 3.4, 60.0, 0.8, [0.185_598_633_989, 0.371_734_119_444, 0.554_587_687_684]),
+    (1.5, 0.2, 3.4, 9000.0, 0.9, [0.917_169_992_567, 0.917_219_789_997, 0.917_196_174_792]),
+];
+
+#[test]
+fn films_are_what_another_program_computes() {
+    for (n2, n3, k3, d, mu, expected) in FILMS {
+        let params = format!(r#"{{"n2": {n2}, "n3": {n3}, "k3": {k3}}}"#);
+        let bound = table("thin-film", "srgb", &params, &[MU, ("film", 0.0, 1e4)]);
+        for tolerance in [1e-3, 1e-6, 1e-9] {
+            let e = texel(&bound, &[*mu, *d], tolerance);
+            for (c, x) in expected.iter().enumerate() {
+                close(&format!("{params} {d} {tolerance:e}"), e.value[c], *x, tolerance);
+                close(&format!("{params} {d} {tolerance:e} estimate"), e.value[c], *x, e.error[c] + 2e-12);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_series_is_near_the_spectrum_where_it_should_be() {
+    // both are fits of one eye under different whites: a few hundredths apart on a dielectric
+    let params = r#"{"n2": 1.5, "n3": 1.33, "orders": 3}"#;
+    let axes = [MU, ("film", 0.0, 1e4)];
+    let series = table("thin-film", "series", params, &axes);
+    let exact = table("thin-film", "srgb", r#"{"n2": 1.5, "n3": 1.33}"#, &axes);
+    for d in [100.0, 300.0, 550.0] {
+        let (a, b) = (texel(&series, &[0.7, d], 1e-9), texel(&exact, &[0.7, d], 1e-9));
+        for c in 0..3 {
+            close(&format!("{d}"), a.value[c], b.value[c], 0.03);
+        }
+    }
+}
+
+#[test]
+fn schlick_and_its_variants_agree_with_high_precision_values() {
+    for (name, variant, names) in [
+        ("fresnel_schlick", "generalised", &[("F0", "f0"), ("F90", "f90"), ("exponent", "exponent")][..]),
+        ("fresnel_f82_tint_unclamped", "f82-tint", &[("F0", "f0"), ("tint", "tint")]),
+        ("fresnel_lazanyi", "lazanyi", &[("n", "n"), ("k", "k"), ("a", "a"), ("alpha", "q")]),
+    ] {
+        for row in rows("points_fresnel", name) {
+            let given: Vec<String> = names
+                .iter()
+                .filter(|n| row.params.get(n.0).is_some())
+                .map(|n| format!(r#""{}": {}"#, n.1, row.params[n.0]))
+                .collect();
+            let params = format!(r#"{{"variant": "{variant}", {}}}"#, given.join(", "));
+            let bound = table("fresnel-schlick", "unclamped", &params, &[MU]);
+            close(&row.name, texel(&bound, &[libm::cos(row.angle)], 1e-9).value[0], row.value, 1e-14);
+        }
+    }
+    // from the denser side: no light passes beyond the critical angle, and F0 is that of the other side
+    let bound = table("fresnel-schlick", "clamped", r#"{"variant": "dielectric", "eta": 0.5}"#, &[MU]);
+    close("total", texel(&bound, &[0.8], 1e-9).value[0], 1.0, 0.0);
+    close("normal", texel(&bound, &[1.0], 1e-9).value[0], 1.0 / 9.0, 1e-15);
+    // negative values are cut where renderers cut them
+    let dark = r#"{"variant": "f82-tint", "f0": 0, "tint": 0}"#;
+    let at = [0.261];
+    close(
+        "dip",
+        texel(&table("fresnel-schlick", "unclamped", dark, &[MU]), &at, 1e-9).value[0],
+        -0.1268,
+        1e-4,
+    );
+    close("cut", texel(&table("fresnel-schlick", "clamped", dark, &[MU]), &at, 1e-9).value[0], 0.0, 0.0);
+}
+
+#[test]
+fn masking_and_visibility_are_closed_forms_at_width_one() {
+    // GGX, alpha = 1: Lambda = (1/mu - 1)/2, so G1 = 2 mu/(1 + mu), G2 = 2 mu_o mu_i/(mu_o + mu_i)
+    let g1 = table("masking", "g1", "{}", &[MU, ("alpha", 0.0, 1.0)]);
+    let axes = [MU, ("mu_i", 0.0, 1.0)];
+    for mu in [1e-6, 0.01, 0.3, 0.9, 1.0] {
+        close("G1", texel(&g1, &[mu, 1.0], 1e-9).value[0], 2.0 * mu / (1.0 + mu), 1e-15);
+        for mu_i in [0.02, 0.5, 1.0] {
+            let value = |layout: &str, masking: &str| {
+                let params = format!(r#"{{"masking": "{masking}", "alpha": 1}}"#);
+                texel(&table("visibility", layout, &params, &axes), &[mu, mu_i], 1e-9).value[0]
+            };
+            close("V", value("visibility", "correlated"), 0.5 / (mu + mu_i), 1e-13 / mu_i);
+            close("G2", value("g2", "correlated"), 2.0 * mu * mu_i / (mu + mu_i), 1e-14);
+            let product = 4.0 * mu * mu_i / ((1.0 + mu) * (1.0 + mu_i));
+            close("G1 G1", value("g2", "separable"), product, 1e-14);
+            close("V sep", value("visibility", "separable"), product / (4.0 * mu * mu_i), 1e-13);
+        }
+    }
+    // Lambda of Beckmann against high-precision values of equal widths
+    for row in
+        rows("points_terms", "Lambda_beckmann").iter().filter(|r| r.params["alpha_x"] == r.params["alpha_y"])
+    {
+        let bound = table("masking", "g1", r#"{"distribution": "beckmann"}"#, &[MU, ("alpha", 0.0, 2.0)]);
+        let got = texel(&bound, &[libm::cos(row.angle), row.num("alpha_x")], 1e-9).value[0];
+        close(&row.name, got, 1.0 / (1.0 + row.value), 1e-12);
+    }
+    // Karis: k = alpha/2
+    let karis = table("masking", "g1", r#"{"distribution": "schlick-ibl"}"#, &[MU, ("alpha", 0.0, 1.0)]);
+    close("karis", texel(&karis, &[0.5, 0.5], 1e-9).value[0], 0.5 / (0.5 * 0.75 + 0.25), 1e-15);
+}
+
+#[test]
+fn laws_hold() {
+    let axis = |id: &str| Axis::new(Quantity::find(id).unwrap(), 9, Texel::Center);
+    let film = || Axis::new(Quantity::find("film").unwrap(), 9, Texel::Endpoint).over([0.0, 900.0]);
+    for (kind, layout, params, axes) in [
+        ("fresnel-conductor", "rgb", r#"{"metal": "cu"}"#, vec![axis("mu")]),
+        ("fresnel-conductor", "srgb", r#"{"metal": "cu"}"#, vec![axis("mu")]),
+        (
+            "fresnel-schlick",
+            "clamped",
+            r#"{"variant": "f82-tint", "tint": 0.2}"#,
+            vec![axis("mu"), axis("f0")],
+        ),
+        ("thin-film", "srgb", "{}", vec![axis("mu"), film()]),
+        ("thin-film", "series", "{}", vec![axis("mu"), film()]),
+        ("masking", "g1", "{}", vec![axis("mu"), axis("roughness")]),
+        ("visibility", "visibility", "{}", vec![axis("mu"), axis("mu_i"), axis("roughness")]),
+    ] {
+        let bound = request(kind, layout, params, axes);
+        let table = bake(&bound, 1e-5).unwrap();
+        let checked = verify::check(&bound, table, 1e-5, &[]);
+        assert!(checked.is_ok(), "{kind} {layout}: {:?}", checked.unwrap_err());
+    }
+}

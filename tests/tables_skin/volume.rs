@@ -1,0 +1,136 @@
+//! Phase functions, their samples, media and black bodies, against high-precision values.
+
+use super::helpers::{close, rows, table, texel};
+use crate::common::{bake, request};
+use brdfbake::grid::{Axis, Quantity, Texel};
+use brdfbake::integrate::line;
+use brdfbake::verify;
+use std::f64::consts::PI;
+
+const ANGLE: (&str, f64, f64) = ("deflection", 0.0, PI);
+
+#[test]
+fn phase_functions_agree_with_high_precision_values() {
+    for (name, id, names) in [
+        ("phase_isotropic", "isotropic", &[][..]),
+        ("phase_hg", "henyey-greenstein", &[("g", "g")]),
+        ("phase_draine", "draine", &[("g", "g"), ("alpha", "draine_alpha")]),
+        ("phase_rayleigh", "rayleigh", &[]),
+        ("phase_mie_hg_draine_fit_5to50um", "fog", &[("d_um", "diameter")]),
+    ] {
+        for row in rows("points_volume", name) {
+            if row.params.get("g").is_some_and(|g| g.as_f64().unwrap().abs() > 0.999) {
+                continue;
+            }
+            let given: Vec<String> =
+                names.iter().map(|n| format!(r#", "{}": {}"#, n.1, row.params[n.0])).collect();
+            let params = format!(r#"{{"phase": "{id}"{}}}"#, given.concat());
+            let bound = table("phase-function", "density", &params, &[ANGLE]);
+            close(&row.name, texel(&bound, &[row.angle], 1e-9).value[0], row.value, 2e-13 * row.value);
+        }
+    }
+}
+
+#[test]
+fn samples_of_phase_functions_agree_with_high_precision_values() {
+    for row in rows("points_volume", "hg_sample_cos") {
+        let bound = table("phase-sampling", "cosine", "{}", &[("u", 0.0, 1.0), ("g", -1.0, 1.0)]);
+        close(&row.name, texel(&bound, &[row.num("xi"), row.num("g")], 1e-9).value[0], row.value, 1e-14);
+    }
+}
+
+/// The inverse against the forward density, integrated by another rule.
+#[test]
+fn the_part_of_the_light_behind_a_sample_is_its_number() {
+    for phase in [
+        r#"{"phase": "henyey-greenstein", "g": -0.9}"#,
+        r#"{"phase": "rayleigh"}"#,
+        r#"{"phase": "draine", "g": 0.6, "draine_alpha": 7}"#,
+        r#"{"phase": "fog", "diameter": 5}"#,
+        r#"{"phase": "fog", "diameter": 10}"#,
+        r#"{"phase": "fog", "diameter": 50}"#,
+        r#"{"phase": "isotropic"}"#,
+    ] {
+        let density = table("phase-function", "density", phase, &[ANGLE]);
+        let sampling = table("phase-sampling", "angle", phase, &[("u", 0.0, 1.0)]);
+        for u in [0.001, 0.2, 0.5, 0.7, 0.9, 0.99] {
+            let theta = texel(&sampling, &[u], 1e-9).value[0];
+            let mut breaks = vec![theta];
+            breaks.extend([1e-3, 1e-2, 0.1, 0.5, 1.0, 2.0, 3.0].into_iter().filter(|b| *b > theta));
+            breaks.push(PI);
+            let behind = line::integrate(&breaks, 1, 1e-12, &mut |t, out| {
+                out[0] = 2.0 * PI * libm::sin(t) * texel(&density, &[t], 1e-9).value[0];
+            });
+            close(phase, behind.value[0], u, 1e-9);
+        }
+        close(phase, texel(&sampling, &[0.0], 1e-9).value[0], PI, 1e-6);
+        close(phase, texel(&sampling, &[1.0], 1e-9).value[0], 0.0, 1e-6);
+    }
+}
+
+#[test]
+fn media_agree_with_high_precision_values() {
+    for (name, layout) in [("beer_lambert_T", "transmitted"), ("beer_lambert_1_minus_T", "lost")] {
+        for row in rows("points_volume", name) {
+            let params = format!(r#"{{"sigma_g": {}}}"#, row.params["sigma_t"]);
+            let bound = table("beer-lambert", layout, &params, &[("path", 0.0, 100.0)]);
+            close(&row.name, texel(&bound, &[row.num("d")], 1e-9).value[1], row.value, 1e-14 * row.value);
+        }
+    }
+}
+
+#[test]
+fn black_bodies_agree_with_high_precision_values() {
+    let axes = [("temperature", 500.0, 1e6)];
+    for row in rows("integrals", "blackbody_linear_srgb") {
+        for tolerance in [1e-3, 1e-6, 1e-9, 1e-11] {
+            let bound = table("blackbody", "hue-unclamped", "{}", &axes);
+            let (e, c) = (texel(&bound, &[row.num("T_K")], tolerance), row.channel());
+            close(&format!("{} {tolerance:e}", row.name), e.value[c], row.value, tolerance);
+            close(&format!("{} {tolerance:e} estimate", row.name), e.value[c], row.value, e.error[c] + 1e-15);
+        }
+    }
+    // at the reference temperature the light is the hue; twice 5000 K has the luminance that Planck's law gives it
+    let light = table("blackbody", "light", r#"{"reference": 5000}"#, &axes);
+    let hue = table("blackbody", "hue", "{}", &axes);
+    let (a, b) = (texel(&light, &[5000.0], 1e-9), texel(&hue, &[5000.0], 1e-9));
+    for c in 0..3 {
+        close("reference", a.value[c], b.value[c], 1e-9);
+    }
+    let ends = |t: f64| {
+        line::integrate(&[360.0, 530.9, 568.8, 830.0], 1, 1e3, &mut |l, out| {
+            out[0] = brdfbake::terms::blackbody::planck(l, t) * brdfbake::terms::blackbody::wyman_xyz(l)[1];
+        })
+        .value[0]
+    };
+    let y = |v: &[f64]| 0.2126729 * v[0] + 0.7151522 * v[1] + 0.0721750 * v[2];
+    let twice = texel(&light, &[10_000.0], 1e-9);
+    close("twice as hot", y(&twice.value), ends(10_000.0) / ends(5000.0), 1e-5);
+}
+
+#[test]
+fn laws_hold() {
+    let axis = |id: &str, lo: f64, hi: f64| {
+        Axis::new(Quantity::find(id).unwrap(), 17, Texel::Endpoint).over([lo, hi])
+    };
+    for (kind, layout, params, axes) in [
+        (
+            "phase-function",
+            "density",
+            r#"{"phase": "draine"}"#,
+            vec![axis("deflection", 0.0, PI), axis("g", -0.9, 0.9)],
+        ),
+        ("phase-function", "relative", r#"{"phase": "fog"}"#, vec![axis("deflection", 0.0, PI)]),
+        ("phase-sampling", "cosine", r#"{"phase": "fog"}"#, vec![axis("u", 0.0, 1.0)]),
+        ("phase-sampling", "angle", "{}", vec![axis("u", 0.0, 1.0), axis("g", -0.9, 0.9)]),
+        ("beer-lambert", "transmitted", "{}", vec![axis("path", 0.0, 10.0)]),
+        ("beer-lambert", "lost", "{}", vec![axis("path", 0.0, 10.0)]),
+        ("blackbody", "hue", "{}", vec![axis("temperature", 800.0, 20_000.0)]),
+        ("blackbody", "light", "{}", vec![axis("temperature", 800.0, 4000.0)]),
+    ] {
+        let bound = request(kind, layout, params, axes);
+        let table = bake(&bound, 1e-5).unwrap();
+        let checked = verify::check(&bound, table, 1e-5, &[]);
+        assert!(checked.is_ok(), "{kind} {layout}: {:?}", checked.unwrap_err());
+    }
+}
