@@ -9,6 +9,8 @@
     reason = "tests"
 )]
 
+#[path = "containers/code.rs"]
+mod code;
 #[path = "containers/dds_file.rs"]
 mod dds_file;
 #[path = "containers/hostile.rs"]

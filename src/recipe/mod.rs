@@ -12,7 +12,7 @@
 //! model = "ggx"                    # default: the kind's; an id or other name of `list models`
 //! params = { masking = "correlated" }   # numbers and words of model and kind; default: theirs
 //! tolerance = 1e-5                 # absolute, per channel; default: see below
-//! outputs = ["exr:half"]           # container:storage; default: ["exr:half"]
+//! outputs = ["exr:half"]           # container:storage, and options: "ktx2:half+rgba+zstd"; default: ["exr:half"]
 //! on-miss = "fail"                 # or "report": a texel that misses the tolerance is counted, not an error
 //! reconstruction = "on"            # or "off": measure the reader's error between texels
 //!
@@ -36,7 +36,7 @@
 //!   w^power = v (1 + c) / (v + c) with c = scale a^exponent and a the base value of the named axis. See
 //!   [`Warp`](crate::grid::Warp).
 //! * **Default tolerance**: half a step near 1 of the finest storage among the outputs: 2^-12 for half, 2^-25 for
-//!   float, 0.5/65535 for unorm16.
+//!   float, 0.5/65535 for unorm16; `brdfbake describe CONTAINER` lists all.
 //! * **Laws** that a table is known to break are waived by `waive = [{ law = "energy", reason = "..." }]`; the file
 //!   then says that it is not verified, with the reason. A law that the kind does not check cannot be waived.
 //!
