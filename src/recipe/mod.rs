@@ -72,6 +72,7 @@ mod document;
 mod fault;
 mod load;
 mod name;
+mod outputs;
 mod plan;
 mod preset;
 mod read_axis;
@@ -81,7 +82,8 @@ mod span;
 pub use diagnostic::{Diagnostic, RecipeError};
 pub use fault::Fault;
 pub use load::{LoadError, load};
-pub use plan::{Output, Plan, PlanError, PlannedTable, TableRequest};
+pub use outputs::Output;
+pub use plan::{Plan, PlanError, PlannedTable, TableRequest};
 pub use preset::{PRESETS, Preset, preset};
 
 use crate::encode::{ENCODERS, Storage};
