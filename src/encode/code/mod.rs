@@ -5,7 +5,7 @@
 //! interpolates linearly along every axis and clamps at the edges, like [`lookup`](crate::grid::lookup), in the numbers
 //! of the array (f32 for `half` and `float`).
 //!
-//! What the function computes is described once ([`program`]) and written by one file a language.
+//! What the function computes is described once (`program.rs`) and written by one file a language.
 //!
 //! The first line is a comment with the provenance as JSON text, in ASCII.
 
@@ -41,7 +41,7 @@ pub(super) enum Function {
     Max,
 }
 
-/// How a language writes what a [`Program`] says. Infix operators are the same in all of them.
+/// How a language writes what a program says. Infix operators are the same in all of them.
 pub trait Syntax: Debug + Send + Sync + 'static {
     /// Id of the container.
     fn id(&self) -> &'static str;
