@@ -172,7 +172,7 @@ fn exit_codes_are_those_of_the_table() {
     expect(&["bake", "./missing.toml", "-o", target], 5, "missing.toml");
     expect(&["bake", "--scene", "missing.glb", "-o", target], 5, "missing.glb");
     expect(&["inspect", "missing.exr"], 5, "missing.exr");
-    expect(&["inspect", "Cargo.toml"], 3, "neither an EXR nor a PNG");
+    expect(&["inspect", "Cargo.toml"], 3, "not a file of exr");
     expect(&["albedo", "gggx"], 3, "did you mean `ggx`?");
     expect(&["albedo", "ggx", "-p", "alhpa=0.5"], 3, "did you mean `alpha`?");
     expect(&["albedo", "ggx", "-p", "alpha=7"], 3, "alpha = 7 outside [0, 2]");

@@ -6,11 +6,17 @@
     clippy::print_stderr,
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
+    clippy::disallowed_methods,
+    clippy::type_complexity,
     reason = "tests"
 )]
 
+#[path = "containers/code.rs"]
+mod code;
 #[path = "containers/dds_file.rs"]
 mod dds_file;
+#[path = "containers/exr_file.rs"]
+mod exr_file;
 #[path = "containers/hostile.rs"]
 mod hostile;
 #[path = "containers/ktx2_file.rs"]

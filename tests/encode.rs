@@ -214,7 +214,7 @@ fn the_same_table_gives_the_same_bytes() {
 fn metadata_is_utf8_and_alone() {
     let t = table(&["v"], |_, x| x);
     let text = "{\"formula\": \"∫ D cosθ dω ≤ 1\"}";
-    for encoder in ENCODERS.iter().filter(|e| e.holds_metadata()) {
+    for encoder in ENCODERS.iter().filter(|e| e.holds_metadata() && !e.magic().is_empty()) {
         let storage = encoder.storages()[0];
         let values = quantise_table(&t, storage).unwrap().values;
         let input = EncodeInput {

@@ -16,9 +16,10 @@ fn write_for_foreign_readers() {
     std::fs::create_dir_all(&folder).unwrap();
     let names = ["dfg.scale", "dfg.bias", "a", "z.cloth"];
     assert_eq!(grid().len(), 35);
-    for encoder in ENCODERS.iter().filter(|e| e.holds(&grid())) {
+    for encoder in ENCODERS.iter().filter(|e| ["exr", "png", "hdr", "npy", "ktx2"].contains(&e.id())) {
         for &storage in encoder.storages() {
-            for n in 1..=names.len() {
+            let most = encoder.most_channels().min(storage.most_channels().unwrap_or(4)).min(4);
+            for n in 1..=most {
                 let t = table(&names[..n], hard(storage));
                 let p = provenance(&t, storage);
                 let values = quantise_table(&t, storage).unwrap().values;

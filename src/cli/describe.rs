@@ -1,6 +1,8 @@
-//! `brdfbake describe ID`: everything that the registries know of a model, function, table, preset, law or quantity.
+//! `brdfbake describe ID`: everything that the registries know of a model, function, table, preset, law, quantity or
+//! container.
 
 use super::{Exit, Failure, output};
+use crate::encode::{self, Encoder};
 use crate::functions::{self, FunctionInfo};
 use crate::grid::Quantity;
 use crate::models::{self, Kind, ModelInfo, Param, Preset};
@@ -11,7 +13,7 @@ use crate::verify;
 /// Arguments of `describe`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Id of a model, function, table, preset, law or quantity.
+    /// Id of a model, function, table, preset, law, quantity or container.
     id: String,
 }
 
@@ -30,11 +32,14 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     );
     parts.extend(verify::find(id).map(law));
     parts.extend(Quantity::find(id).map(quantity));
+    parts.extend(encode::encoder(id).map(format));
     if parts.is_empty() {
         let ids = || {
             let models = models::MODELS.iter().map(|m| m.id).chain(functions::all().map(|f| f.id));
             let tables = tables::TABLES.iter().map(|t| t.id);
-            models.chain(tables).chain(PRESETS.iter().map(|p| p.id)).chain(verify::LAWS.iter().map(|l| l.id))
+            let formats = encode::ENCODERS.iter().map(|e| e.id());
+            let rest = PRESETS.iter().map(|p| p.id).chain(verify::LAWS.iter().map(|l| l.id)).chain(formats);
+            models.chain(tables).chain(rest)
         };
         let hint = crate::math::nearest::nearest(id, ids())
             .map_or_else(String::new, |n| format!("; did you mean `{n}`?"));
@@ -145,6 +150,32 @@ pub fn table(t: &TableInfo) -> String {
 
 fn law(l: &'static verify::Law) -> String {
     format!("law {} (finding BB{:04})\n{}\nmargin: {}\n", l.id, l.code, l.statement, l.margin)
+}
+
+fn format(e: &'static dyn Encoder) -> String {
+    let mut text = format!(
+        "container {}\nfiles *.{}, at most {} channels\nstorages:\n",
+        e.id(),
+        e.extension(),
+        e.most_channels()
+    );
+    for s in e.storages() {
+        let limit = s.most_channels().map_or_else(String::new, |n| format!("at most {n} channels, "));
+        let tolerance = s.default_tolerance();
+        text.push_str(&format!(
+            "  {}:{} ({limit}default tolerance {tolerance:e}): {}\n",
+            e.id(),
+            s.id(),
+            s.meaning()
+        ));
+    }
+    for o in e.options() {
+        text.push_str(&format!("option +{}: {}\n", o.id(), o.meaning()));
+    }
+    let yes = |b: bool| if b { "yes" } else { "no" };
+    text.push_str(&format!("holds the provenance: {}\n", yes(e.holds_metadata())));
+    text.push_str(&format!("read by inspect and diff: {}\n", yes(!e.magic().is_empty())));
+    text
 }
 
 fn quantity(q: &'static Quantity) -> String {

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 /// Arguments of `inspect`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// EXR or PNG files, from this program or any other.
+    /// Picture files (EXR, KTX2, DDS, PNG, HDR, NPY), from this program or any other.
     #[arg(required = true)]
     files: Vec<PathBuf>,
     /// Print the provenance as JSON instead of text.

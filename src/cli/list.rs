@@ -2,6 +2,7 @@
 
 use super::{Exit, Failure, output};
 use crate::encode::ENCODERS;
+use crate::encode::option::words;
 use crate::functions;
 use crate::grid::quantity::QUANTITIES;
 use crate::models::MODELS;
@@ -69,7 +70,11 @@ fn rows(what: What) -> Vec<(String, String)> {
             .map(|e| {
                 let storages: Vec<String> =
                     e.storages().iter().map(|s| format!("{}:{}", e.id(), s.id())).collect();
-                (e.id().to_owned(), format!("*.{}: {}", e.extension(), storages.join(", ")))
+                let options = match e.options() {
+                    [] => String::new(),
+                    options => format!("; options +{}", words(options).replace(", ", ", +")),
+                };
+                (e.id().to_owned(), format!("*.{}: {}{options}", e.extension(), storages.join(", ")))
             })
             .collect(),
         What::Laws => LAWS.iter().map(|l| row(l.id, l.statement)).collect(),

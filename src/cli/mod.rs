@@ -31,7 +31,7 @@ pub struct Cli {
 enum Verb {
     /// Bake the tables of a recipe, a preset or a glTF scene.
     Bake(bake::Args),
-    /// Print what a baked file (or any EXR or PNG) holds.
+    /// Print what a baked file (or any picture of a format that is read) holds.
     Inspect(inspect::Args),
     /// Compare two images or two output folders.
     Diff(diff::Args),

@@ -43,7 +43,35 @@ fn decode(bytes: &[u8]) -> Result<Image, ReadError> {
     if picture.pixels_left > 0 {
         return Err(fault(format!("{} pixels are in no block of the file", picture.pixels_left)));
     }
-    Ok(Image { format: FORMAT, width, height, channels: picture.planes, provenance })
+    let parts = slices(&provenance, picture.first.len());
+    let channels = stack(picture.planes, parts);
+    let height = channels.first().map_or(height, |c| c.values.len() / width.max(1));
+    Ok(Image { format: FORMAT, width, height, channels, provenance })
+}
+
+/// Number of parts, if the provenance tells of as many slices.
+fn slices(provenance: &Option<Claim>, parts: usize) -> usize {
+    let Some(Claim::Known(p)) = provenance else { return 1 };
+    let slices = p.axes.iter().skip(2).fold(1usize, |n, a| n.saturating_mul(a.axis.len));
+    if slices == parts { parts } else { 1 }
+}
+
+/// Slices that are parts, below each other as in a file of one part. Parts that are not alike are left as they are.
+fn stack(planes: Vec<Plane>, parts: usize) -> Vec<Plane> {
+    let n = planes.len() / parts.max(1);
+    let name = |p: &Plane| p.name.split_once('.').map_or(String::new(), |(_, name)| name.to_owned());
+    let like = |(i, p): (usize, &Plane)| name(p) == name(&planes[i % n]) && p.sample == planes[i % n].sample;
+    if parts < 2 || n == 0 || !planes.len().is_multiple_of(parts) || !planes.iter().enumerate().all(like) {
+        return planes;
+    }
+    let mut stacked: Vec<Plane> = Vec::with_capacity(n);
+    for (i, plane) in planes.into_iter().enumerate() {
+        match stacked.get_mut(i % n) {
+            Some(first) => first.values.extend(plane.values),
+            None => stacked.push(Plane { name: name(&plane), ..plane }),
+        }
+    }
+    stacked
 }
 
 fn library(e: Error) -> ReadError {

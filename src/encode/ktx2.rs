@@ -33,7 +33,7 @@ pub(super) const MAGIC: &[u8] = b"\xabKTX 20\xbb\r\n\x1a\n";
 const HEAD: usize = 80 + 24;
 
 /// Supercompression scheme Zstandard.
-const SCHEME_ZSTD: u32 = 2;
+pub(super) const SCHEME_ZSTD: u32 = 2;
 
 #[cfg(feature = "zstd")]
 const LEVEL: i32 = 19;

@@ -1,10 +1,11 @@
 //! Reads KTX2 of the formats that are written: one face, the largest level, slices and layers stacked.
+//!
+//! By hand: the crate `ktx2` (0.5) panics on a descriptor with a block dimension of 256, and little of it would be used.
 
-use super::ktx2::storage;
+use super::ktx2::{SCHEME_ZSTD, storage};
 use super::read::{Claim, Image, MAX_SAMPLES, ReadError};
 use super::texels;
 use crate::grid::provenance::ATTRIBUTE;
-use ::ktx2::SupercompressionScheme;
 use std::io::Read;
 
 const FORMAT: &str = "ktx2";
@@ -13,44 +14,75 @@ const FORMAT: &str = "ktx2";
 const MAX_TEXT: usize = 1 << 24;
 
 pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
-    let reader = ::ktx2::Reader::new(bytes).map_err(library)?;
-    let header = reader.header();
-    let format = header.format.map_or(0, |f| f.value());
+    let format = word(bytes, 12)?;
     let (storage, components) =
         storage(format).ok_or_else(|| fault(format!("VkFormat {format} is not supported")))?;
-    if header.face_count != 1 {
-        return Err(fault(format!("{} faces; cube maps are not supported", header.face_count)));
+    let faces = word(bytes, 36)?;
+    if faces != 1 {
+        return Err(fault(format!("{faces} faces; cube maps are not supported")));
     }
-    let length = |n: u32| (n as usize).max(1);
-    let width = header.pixel_width as usize;
-    let height = length(header.pixel_height)
-        .saturating_mul(length(header.pixel_depth))
-        .saturating_mul(length(header.layer_count));
-    let samples = width.saturating_mul(height).saturating_mul(components);
+    let width = word(bytes, 20)? as usize;
+    // height, depth, layers: 0 where there is none
+    let mut height = 1usize;
+    for at in [24, 28, 32] {
+        height = height.saturating_mul((word(bytes, at)? as usize).max(1));
+    }
     if width == 0 {
         return Err(fault("the width is 0".to_owned()));
     }
-    if samples > MAX_SAMPLES {
+    if width.saturating_mul(height).saturating_mul(components) > MAX_SAMPLES {
         return Err(ReadError::Samples { format: FORMAT, width, height });
     }
     let size = width * height * texels::size(storage, components);
-    let level = reader.levels().next().ok_or_else(|| fault("the file has no level".to_owned()))?;
-    let unpacked = match header.supercompression_scheme {
-        None => None,
-        Some(SupercompressionScheme::Zstandard) => Some(decompress(level.data, size)?),
-        Some(other) => return Err(fault(format!("supercompression {} is not supported", other.value()))),
+    let [start, length] = [80, 88].map(|at| long(bytes, at));
+    let level = part(bytes, start?, length?)?;
+    let unpacked = match word(bytes, 44)? {
+        0 => None,
+        SCHEME_ZSTD => Some(decompress(level, size)?),
+        other => return Err(fault(format!("supercompression {other} is not supported"))),
     };
-    let data = unpacked.as_deref().unwrap_or(level.data);
+    let data = unpacked.as_deref().unwrap_or(level);
     if data.len() != size {
         return Err(fault(format!("the level has {} bytes, its size tells of {size}", data.len())));
     }
-    let text = reader.key_value_data().find(|(key, _)| *key == ATTRIBUTE).map(|(_, value)| value);
-    let provenance = text.filter(|t| t.len() <= MAX_TEXT).map(|value| {
+    let keys = part(bytes, word(bytes, 56)?.into(), word(bytes, 60)?.into())?;
+    let provenance = value(keys, ATTRIBUTE.as_bytes()).filter(|t| t.len() <= MAX_TEXT).map(|value| {
         let value = value.strip_suffix(&[0]).unwrap_or(value);
         Claim::parse(String::from_utf8_lossy(value).into_owned())
     });
     let channels = texels::finish(texels::unpack(data, storage, components), provenance.as_ref());
     Ok(Image { format: FORMAT, width, height, channels, provenance })
+}
+
+fn part(bytes: &[u8], start: u64, length: u64) -> Result<&[u8], ReadError> {
+    let index = |n: u64| usize::try_from(n).ok();
+    let range = index(start).and_then(|s| Some(s..s.checked_add(index(length)?)?));
+    range.and_then(|r| bytes.get(r)).ok_or_else(cut)
+}
+
+fn word(bytes: &[u8], at: usize) -> Result<u32, ReadError> {
+    bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes).ok_or_else(cut)
+}
+
+fn long(bytes: &[u8], at: usize) -> Result<u64, ReadError> {
+    bytes.get(at..at + 8).and_then(|b| b.try_into().ok()).map(u64::from_le_bytes).ok_or_else(cut)
+}
+
+/// The value of a key, if the entries before it are sound.
+fn value<'a>(mut keys: &'a [u8], wanted: &[u8]) -> Option<&'a [u8]> {
+    loop {
+        let length = word(keys, 0).ok()? as usize;
+        let entry = keys.get(4..4usize.checked_add(length)?)?;
+        let end = entry.iter().position(|b| *b == 0)?;
+        if &entry[..end] == wanted {
+            return Some(&entry[end + 1..]);
+        }
+        keys = keys.get((4 + length).next_multiple_of(4)..)?;
+    }
+}
+
+fn cut() -> ReadError {
+    fault("the file is cut short, or a part lies outside of it".to_owned())
 }
 
 /// Decompresses at most `size` bytes and one more, so that a frame that tells lies is found out and asks for no memory.

@@ -42,6 +42,7 @@
 //! One file, one `pub mod` line, one line in [`ENCODERS`].
 
 pub mod atomic;
+pub mod code;
 mod coding;
 pub mod csv;
 pub mod dds;
@@ -126,8 +127,24 @@ pub trait Encoder: Debug + Send + Sync {
 }
 
 /// Every container.
-pub static ENCODERS: &[&dyn Encoder] =
-    &[&exr::Exr, &ktx2::Ktx2, &dds::Dds, &png::Png, &hdr::Hdr, &npy::Npy, &raw::Raw, &csv::Csv, &merl::Merl];
+pub static ENCODERS: &[&dyn Encoder] = &[
+    &exr::Exr,
+    &ktx2::Ktx2,
+    &dds::Dds,
+    &png::Png,
+    &hdr::Hdr,
+    &npy::Npy,
+    &raw::Raw,
+    &csv::Csv,
+    &merl::Merl,
+    &code::Code(code::C),
+    &code::Code(code::Cpp),
+    &code::Code(code::Rust),
+    &code::Code(code::Glsl),
+    &code::Code(code::Wgsl),
+    &code::Code(code::Hlsl),
+    &code::Code(code::Js),
+];
 
 /// Looks a container up by its id.
 #[must_use]

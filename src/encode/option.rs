@@ -49,6 +49,20 @@ impl FileOption {
         }
     }
 
+    /// One line of meaning.
+    #[must_use]
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            FileOption::Rgba => "four components a pixel; those without channel are 0, the fourth is 1",
+            FileOption::FillZero => "components without channel are 0",
+            FileOption::FillOne => "components without channel are 1",
+            FileOption::Layers => "a third axis makes the layers of an array, not a volume",
+            FileOption::Parts => "a third axis makes parts of the file, not slices below each other",
+            FileOption::Tiled => "tiles of 64 x 64 pixels",
+            FileOption::Zstd => "supercompressed with Zstandard, level 19",
+        }
+    }
+
     /// Looks an option up by its word.
     #[must_use]
     pub fn find(id: &str) -> Option<FileOption> {

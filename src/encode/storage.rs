@@ -140,6 +140,25 @@ impl Storage {
         }
     }
 
+    /// One line of meaning.
+    #[must_use]
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            Storage::Half => "16-bit float, 11 bits, largest 65504",
+            Storage::Float => "32-bit float, 24 bits",
+            Storage::Double => "64-bit float",
+            Storage::Unorm8 => "lo + code / 255 (hi - lo) over the range of the channel",
+            Storage::Unorm16 => "lo + code / 65535 (hi - lo) over the range of the channel",
+            Storage::Rgb10a2 => "lo + code / 1023 (hi - lo) over the range of the channel, 32 bits a texel",
+            Storage::R11g11b10 => {
+                "unsigned floats of 7, 7 and 6 bits, largest 65024 and 64512, 32 bits a texel"
+            }
+            Storage::Rgb9e5 => "9 bits each with one exponent, largest 65408, not negative, 32 bits a texel",
+            Storage::Rgbe => "8 bits each with one exponent, not negative, 32 bits a texel",
+            Storage::Rgbd => "(code / 255)^2.2 / (d / 255), 8 bits each and d, largest 255, not negative",
+        }
+    }
+
     /// Looks a storage up by its id.
     #[must_use]
     pub fn find(id: &str) -> Option<Storage> {

@@ -1,7 +1,7 @@
 //! The file as it is written: every key read and of the right type, nothing looked up yet but quantities.
 
 use super::fault::{Fault, Faults};
-use super::plan::Output;
+use super::outputs::Output;
 use super::read_axis;
 use super::section::{Section, wrong};
 use super::sizing::{self, Sizing};
@@ -174,7 +174,7 @@ fn outputs(section: &Section<'_>, faults: &mut Faults) -> Option<Vec<Option<Outp
         let output = item.get_ref().as_str().and_then(|text| text.split_once(':'));
         if output.is_none() {
             let fault = match item.get_ref().as_str() {
-                Some(got) => Fault::OutputForm { got: super::fault::show(got), allowed: all_outputs() },
+                Some(got) => Fault::OutputForm { got: super::fault::show(got), allowed: containers() },
                 None => wrong(&format!("outputs[{i}]"), item.get_ref(), "a string, such as \"exr:half\""),
             };
             faults.value(path, fault);
@@ -188,10 +188,9 @@ fn outputs(section: &Section<'_>, faults: &mut Faults) -> Option<Vec<Option<Outp
     Some(outputs)
 }
 
-/// `exr:half, exr:float, ...`.
-fn all_outputs() -> String {
-    let pairs = formats().iter().flat_map(|f| f.storages.iter().map(|s| format!("{}:{}", f.container, s.id)));
-    pairs.collect::<Vec<_>>().join(", ")
+/// `exr, ktx2, ...`.
+fn containers() -> String {
+    formats().iter().map(|f| f.container).collect::<Vec<_>>().join(", ")
 }
 
 fn waivers(section: &Section<'_>, faults: &mut Faults) -> Vec<Option<Waiver>> {

@@ -136,7 +136,7 @@ pub enum Fault {
     OutputForm {
         /// The text given.
         got: String,
-        /// What there is.
+        /// The containers there are.
         allowed: String,
     },
     /// A storage that spreads its steps over the range of a channel, and a channel with a very wide range.
@@ -150,8 +150,13 @@ pub enum Fault {
         range: [f64; 2],
     },
     /// A container that cannot hold the table: too many channels, options that exclude each other.
-    #[error("{0}")]
-    Container(String),
+    #[error("{why}")]
+    Container {
+        /// What it cannot hold.
+        why: String,
+        /// What to do about it.
+        remedy: &'static str,
+    },
     /// A waiver for a law that is not checked.
     #[error("table {kind} does not check law `{law}`")]
     IdleWaiver {
@@ -206,7 +211,7 @@ impl Fault {
             Fault::TextLength { limit, .. } => Some(format!("allowed: 1 to {limit} characters")),
             Fault::Name { allowed, .. } => Some(format!("allowed: {allowed}")),
             Fault::Twice { why, .. } => Some(why.clone()),
-            Fault::OutputForm { allowed, .. } => Some(format!("there is {allowed}")),
+            Fault::OutputForm { allowed, .. } => Some(format!("containers are {allowed}")),
             Fault::IdleWaiver { allowed, .. } => Some(format!("it checks {allowed}")),
             Fault::SweptRange { owner, allowed: [min, max], .. } => {
                 Some(format!("{owner} takes {} to {}", number(*min), number(*max)))
@@ -241,7 +246,8 @@ impl Fault {
             Fault::WarpForm { .. } => {
                 "write { power = p }, { one-minus-power = p } or { coupled = \"alpha\", power = 2.0, scale = 1.0, exponent = 1.0 }"
             }
-            Fault::Container(_) => "take another container, storage or layout",
+            Fault::OutputForm { .. } => "write it like \"exr:half\"; `brdfbake list formats` has all",
+            Fault::Container { remedy, .. } => remedy,
             Fault::WideRange { .. } => "store it as half or float, or take a layout with bounded channels",
             Fault::SweptRange { .. } => "give the axis a domain inside that range",
             Fault::SplitFresnel { .. } => "leave it out; the shader applies F0 and F90",

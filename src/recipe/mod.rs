@@ -13,7 +13,7 @@
 //! model = "ggx"                    # default: the kind's; an id or other name of `list models`
 //! params = { masking = "correlated" }   # numbers and words of model and kind; default: theirs
 //! tolerance = 1e-5                 # absolute, per channel; default: see below
-//! outputs = ["exr:half"]           # container:storage; default: ["exr:half"]
+//! outputs = ["exr:half"]           # container:storage, and options: "ktx2:half+rgba+zstd"; default: ["exr:half"]
 //! on-miss = "fail"                 # or "report": a texel that misses the tolerance is counted, not an error
 //! reconstruction = "on"            # or "off": measure the reader's error between texels
 //! # size = "auto"                  # instead of lengths: find them, see below
@@ -38,7 +38,7 @@
 //!   w^power = v (1 + c) / (v + c) with c = scale a^exponent and a the base value of the named axis. See
 //!   [`Warp`](crate::grid::Warp).
 //! * **Default tolerance**: half a step near 1 of the finest storage among the outputs: 2^-12 for half, 2^-25 for
-//!   float, 0.5/65535 for unorm16.
+//!   float, 0.5/65535 for unorm16; `brdfbake describe CONTAINER` lists all.
 //! * **Size from an error**: `size = "auto"` finds the smallest table that a bilinear reader of the stored numbers reads to
 //!   within 2^-10 over the whole domain. `size = { error = 1e-3, domain = "practical", warps = "search", longest = 256 }` says it
 //!   in full. Axes with a `length` keep it, the others are searched; `warps = "search"` tries other warps on those.
@@ -77,6 +77,7 @@ mod document;
 mod fault;
 mod load;
 mod name;
+mod outputs;
 mod plan;
 mod preset;
 mod read_axis;
@@ -87,7 +88,8 @@ mod span;
 pub use diagnostic::{Diagnostic, RecipeError};
 pub use fault::Fault;
 pub use load::{LoadError, load};
-pub use plan::{Output, Plan, PlanError, PlannedTable, TableRequest};
+pub use outputs::Output;
+pub use plan::{Plan, PlanError, PlannedTable, TableRequest};
 pub use preset::{PRESETS, Preset, preset};
 pub use sizing::Sizing;
 

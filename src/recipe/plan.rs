@@ -4,14 +4,14 @@ use super::bind;
 use super::canonical;
 use super::document::{Document, Entry};
 use super::fault::{Fault, Faults};
+use super::outputs::{self, Output};
 use super::section::unknown_word;
 use super::sizing::Sizing;
-use super::{Format, Stored, TOLERANCE, formats, name};
-use crate::encode::{self, FileOption, Shape, Storage};
+use super::{TOLERANCE, name};
 use crate::grid::provenance::{SizeRecord, Waiver};
 use crate::tables::driver::OnMiss;
 use crate::tables::spec::Request;
-use crate::tables::{Bound, ChannelInfo, TableInfo};
+use crate::tables::{Bound, TableInfo};
 use crate::verify;
 use serde_json::Value as Json;
 use std::collections::HashSet;
@@ -77,40 +77,6 @@ impl PlannedTable {
     }
 }
 
-/// A file to write.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Output {
-    /// Container id: `exr`.
-    pub container: String,
-    /// Storage id: `half`.
-    pub storage: String,
-    /// Words of its options: `rgba`, `zstd`. In a plan: each once, in the order of
-    /// [`FILE_OPTIONS`](crate::encode::FILE_OPTIONS).
-    pub options: Vec<String>,
-}
-
-impl Output {
-    /// An output without options.
-    #[must_use]
-    pub fn new(container: &str, storage: &str) -> Output {
-        Output { container: container.to_owned(), storage: storage.to_owned(), options: Vec::new() }
-    }
-
-    /// The options, without words that are none.
-    #[must_use]
-    pub fn file_options(&self) -> Vec<FileOption> {
-        self.options.iter().filter_map(|o| FileOption::find(o)).collect()
-    }
-}
-
-/// `ktx2:half+rgba+zstd`.
-impl std::fmt::Display for Output {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}:{}", self.container, self.storage)?;
-        self.options.iter().try_for_each(|o| write!(f, "+{o}"))
-    }
-}
-
 /// A table asked for by a program instead of a file.
 #[derive(Debug, Clone)]
 pub struct TableRequest {
@@ -141,7 +107,7 @@ impl TableRequest {
             request,
             tolerance: None,
             on_miss: OnMiss::Fail,
-            outputs: vec![default_output()],
+            outputs: vec![outputs::default()],
             reconstruction: true,
             size: None,
             waivers: Vec::new(),
@@ -243,10 +209,6 @@ fn entry(i: usize, table: TableRequest) -> Entry {
     }
 }
 
-fn default_output() -> Output {
-    Output::new("exr", "half")
-}
-
 /// Resolves a document. None if a part of it is missing; the faults say which.
 pub(super) fn resolve(document: Document, faults: &mut Faults) -> Option<Plan> {
     if let Some(fault) = document.name.as_deref().and_then(name::recipe) {
@@ -296,13 +258,12 @@ fn check_name(entry: &Entry, taken: &mut HashSet<String>, faults: &mut Faults) {
 fn table(entry: Entry, tolerance: Option<f64>, faults: &mut Faults) -> Option<PlannedTable> {
     let before = faults.len();
     check_tolerance(entry.tolerance, format!("{}.tolerance", entry.path), faults);
-    let (outputs, stored) = outputs(&entry, faults);
+    let (outputs, stored) = outputs::resolve(&entry, faults);
     let bound = bind::bind(&entry, faults);
     let kind = entry.kind.as_deref().and_then(crate::tables::find);
     let waivers = kind.map(|kind| waivers(&entry, kind, faults));
     if let Some(bound) = &bound {
-        check_storable(&entry, bound, &stored, faults);
-        check_shapes(&entry, bound, faults);
+        outputs::check(&entry, bound, &stored, faults);
     }
     if faults.len() > before {
         return None;
@@ -337,101 +298,6 @@ fn check_tolerance(tolerance: Option<f64>, path: String, faults: &mut Faults) {
     let [min, max] = TOLERANCE;
     if let Some(got) = tolerance.filter(|t| !(min..=max).contains(t)) {
         faults.value(path, Fault::Range { key: "tolerance".to_owned(), got, min, max });
-    }
-}
-
-/// The outputs, and the storage of each as it was listed; none where it is not known.
-fn outputs(entry: &Entry, faults: &mut Faults) -> (Vec<Output>, Vec<Option<&'static Stored>>) {
-    let Some(listed) = &entry.outputs else {
-        let output = default_output();
-        let stored = format(&output.container).and_then(|f| storage(f, &output.storage));
-        return (vec![output], vec![stored]);
-    };
-    let path = format!("{}.outputs", entry.path);
-    if listed.is_empty() {
-        faults.value(path.clone(), Fault::Count { key: "outputs", got: 0, allowed: "1 or more".to_owned() });
-    }
-    let mut known = Vec::new();
-    let mut stored = Vec::new();
-    for (i, output) in listed.iter().enumerate() {
-        let found = output.as_ref().and_then(|output| match check_output(output, &known) {
-            Ok((output, stored)) => {
-                known.push(output);
-                Some(stored)
-            }
-            Err(fault) => {
-                faults.value(format!("{path}[{i}]"), fault);
-                None
-            }
-        });
-        stored.push(found);
-    }
-    (known, stored)
-}
-
-/// The output with its options in order, and its storage.
-fn check_output(output: &Output, before: &[Output]) -> Result<(Output, &'static Stored), Fault> {
-    let Output { container, storage: id, .. } = output;
-    let found = format(container)
-        .ok_or_else(|| unknown_word("container", container, formats().iter().map(|f| f.container)))?;
-    let stored = storage(found, id).ok_or_else(|| {
-        unknown_word(&format!("{container} storage"), id, found.storages.iter().map(|s| s.id))
-    })?;
-    let offered = encode::encoder(container).map_or(&[][..], |e| e.options());
-    let mut options = Vec::new();
-    for word in &output.options {
-        let option = offered.iter().find(|o| o.id() == word).ok_or_else(|| {
-            unknown_word(&format!("{container} option"), word, offered.iter().map(|o| o.id()))
-        })?;
-        options.push(*option);
-    }
-    options.sort();
-    options.dedup();
-    if before.iter().any(|o| o.container == *container && o.storage == *id) {
-        let why = "both would write the same file".to_owned();
-        return Err(Fault::Twice { what: "output", got: format!("{container}:{id}"), why });
-    }
-    let options = options.iter().map(|o| o.id().to_owned()).collect();
-    Ok((Output { options, ..output.clone() }, stored))
-}
-
-/// A container must be able to hold a table of this shape: channels, axes, options.
-fn check_shapes(entry: &Entry, bound: &Bound, faults: &mut Faults) {
-    for (i, output) in entry.outputs.iter().flatten().enumerate() {
-        let known = output.as_ref().and_then(|o| {
-            let options = o.file_options();
-            let all = options.len() == o.options.len();
-            all.then_some((encode::encoder(&o.container)?, Storage::find(&o.storage)?, options))
-        });
-        let Some((encoder, storage, options)) = known else { continue };
-        let channels = bound.spec.layout.channels.len();
-        let shape = Shape { grid: &bound.spec.grid, channels, storage, options: &options };
-        let offered =
-            encoder.storages().contains(&storage) && options.iter().all(|o| encoder.options().contains(o));
-        if offered && let Err(error) = shape.check(encoder) {
-            faults.value(format!("{}.outputs[{i}]", entry.path), Fault::Container(error.to_string()));
-        }
-    }
-}
-
-fn format(container: &str) -> Option<&'static Format> {
-    formats().iter().find(|f| f.container == container)
-}
-
-fn storage(format: &'static Format, id: &str) -> Option<&'static Stored> {
-    format.storages.iter().find(|s| s.id == id)
-}
-
-/// A storage that spreads its steps over the range of a channel must have a step that is of use.
-fn check_storable(entry: &Entry, bound: &Bound, stored: &[Option<&'static Stored>], faults: &mut Faults) {
-    for (i, stored) in stored.iter().enumerate() {
-        let Some(stored) = stored.filter(|s| s.bounded) else { continue };
-        let half_step = |c: &&ChannelInfo| stored.half_step * (c.range[1] - c.range[0]);
-        let wide = |c: &&ChannelInfo| half_step(c).is_nan() || half_step(c) > TOLERANCE[1];
-        if let Some(channel) = bound.spec.layout.channels.iter().find(wide) {
-            let fault = Fault::WideRange { storage: stored.id, channel: channel.id, range: channel.range };
-            faults.value(format!("{}.outputs[{i}]", entry.path), fault);
-        }
     }
 }
 

@@ -91,10 +91,10 @@ fn axis(lines: &mut Lines, letter: &str, r: &AxisRecord) {
 fn planes(lines: &mut Lines, image: &Image, p: Option<&Provenance>) {
     lines.plain("Channels");
     for (i, plane) in image.channels.iter().enumerate() {
-        // A PNG has no names: say which sample of the pixel it is.
+        // Most containers have no names: say which component of the pixel it is.
         let colour = match (image.format, p, image.channels.len()) {
             ("png", Some(_), 1) => "grey, ",
-            ("png", Some(_), _) => {
+            ("png" | "ktx2" | "dds" | "hdr", Some(_), _) => {
                 ["red, ", "green, ", "blue, ", "alpha, "].get(i).copied().unwrap_or_default()
             }
             _ => "",

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Reads files of brdfbake with the OpenEXR and OpenImageIO libraries and compares what they see.
+"""Reads files of brdfbake with OpenEXR, OpenImageIO and NumPy and compares what they see.
 
     pip install OpenEXR OpenImageIO numpy
     BRDFBAKE_FOREIGN=foreign-out cargo test --test foreign -- --ignored
     python3 tests/foreign/read_back.py foreign-out
 
-Every .exr and .png below the folder is read. Next to a file, `<name>.expected.json` (written by tests/foreign.rs) says
+Every .exr, .png, .hdr and .npy below the folder is read. Next to a file, `<name>.expected.json` (written by tests/foreign.rs) says
 which bits every channel must have; without it, the libraries are compared with each other and with the metadata in
 the file (size, channels, sample type), which is how the outputs of the command are checked.
 
@@ -25,7 +25,15 @@ except ImportError as e:
     sys.exit(2)
 
 ATTRIBUTE = "brdfbake"
-STORAGE = {"float16": "half", "float32": "float", "uint16": "unorm16"}
+STORAGE = {
+    "float16": "half",
+    "float32": "float",
+    "float64": "double",
+    "uint8": "unorm8",
+    "uint16": "unorm16",
+    "rgbd": "rgbd",
+    "rgbe": "rgbe",
+}
 
 
 class Difference(Exception):
@@ -86,20 +94,57 @@ def exr(path):
 def png(path):
     """The codes of the channels that the metadata names, as values."""
     codes, text, spec = openimageio(path)
-    same("bits", spec.get_int_attribute("oiio:BitsPerSample", 16), 16)
+    told = json.loads(text)
+    named, storage = told["channels"], told["encoding"]["storage"]
+    width = 16 if storage == "unorm16" else 8
+    same("bits", spec.get_int_attribute("oiio:BitsPerSample", width), width)
     space = spec.getattribute("oiio:ColorSpace") or ""
     same("linear colour space", space.startswith("lin"), True)
-    named = json.loads(text)["channels"]
     samples = list(codes.values())
+    values = {}
+    if storage == "rgbd":
+        same("samples a pixel", len(samples), 4)
+        divisor = samples[3].astype(np.float64) / 255.0
+        for channel, code in zip(named, samples):
+            same(f"type of {channel['id']}", str(code.dtype), "uint8")
+            values[channel["id"]] = ((code.astype(np.float64) / 255.0) ** 2.2 / divisor, "rgbd")
+        return values, text
     same("samples a pixel", len(samples), 3 if len(named) == 2 else len(named))
     if len(named) == 2 and samples[2].any():
         raise Difference("the blue of two channels is not empty")
-    values = {}
+    top = float(2**width - 1)
     for channel, code in zip(named, samples):
-        same(f"type of {channel['id']}", str(code.dtype), "uint16")
+        same(f"type of {channel['id']}", str(code.dtype), f"uint{width}")
         lo, hi = channel["range"]
-        values[channel["id"]] = (lo + code.astype(np.float64) / 65535.0 * (hi - lo), "uint16")
+        values[channel["id"]] = (lo + code.astype(np.float64) / top * (hi - lo), f"uint{width}")
     return values, text
+
+
+def hdr(path):
+    """Channels of a Radiance picture; the metadata is a line of its header."""
+    channels, _, _ = openimageio(path)
+    head = path.read_bytes().split(b"\n\n", 1)[0].split(b"\n")
+    text = next(line for line in head if line.startswith(b"brdfbake=")).split(b"=", 1)[1].decode()
+    named = [c["id"] for c in json.loads(text)["channels"]]
+    planes = list(channels.values())
+    same("channels", len(planes), 3)
+    for rest in planes[len(named) :]:
+        if rest.any():
+            raise Difference("a component without channel is not empty")
+    return {name: (p.astype(np.float64), "rgbe") for name, p in zip(named, planes)}, text
+
+
+def npy(path):
+    """An array says nothing of itself: the expectation names its channels."""
+    array = np.load(path, allow_pickle=False)
+    same("C order", array.flags["C_CONTIGUOUS"], True)
+    sidecar = path.with_name(path.name + ".expected.json")
+    if not sidecar.exists():
+        return {f"c{i}": (array[..., i].reshape(-1, array.shape[-2]), str(array.dtype)) for i in range(array.shape[-1])}, None
+    expected = json.loads(sidecar.read_text(encoding="utf-8"))
+    same("shape", array.shape, (expected["height"], expected["width"], len(expected["channels"])))
+    names = [c["id"] for c in json.loads(expected["brdfbake"])["channels"]]
+    return {n: (array[..., i], str(array.dtype)) for i, n in enumerate(names)}, expected["brdfbake"]
 
 
 def check(path):
@@ -107,7 +152,9 @@ def check(path):
         arrays, text = exr(path)
         channels = {name: (values, str(values.dtype)) for name, values in arrays.items()}
     else:
-        channels, text = png(path)
+        channels, text = {".png": png, ".hdr": hdr, ".npy": npy}[path.suffix](path)
+    if text is None and path.suffix == ".npy":
+        return "an array without metadata"
     if text is None:
         raise Difference("no metadata")
     told = json.loads(text)
@@ -130,6 +177,11 @@ def check(path):
     for name, column in expected["channels"].items():
         got = [f"{b:016x}" for b in bits(channels[name][0]).ravel()]
         for i, (g, e) in enumerate(zip(got, column, strict=True)):
+            if expected["storage"] == "rgbd":
+                # a power is no exact operation
+                g, e = (np.uint64(int(x, 16)).view(np.float64) for x in (g, e))
+                same(f"{name}, texel {i}: {g} for {e}", bool(abs(g - e) <= 1e-14 * abs(e)), True)
+                continue
             same(f"{name}, texel {i}", g, e)
     return f"{len(expected['channels'])} channels, every bit as expected"
 
@@ -138,9 +190,9 @@ def main():
     if len(sys.argv) != 2:
         print(__doc__, file=sys.stderr)
         return 2
-    files = sorted(p for p in Path(sys.argv[1]).rglob("*") if p.suffix in (".exr", ".png"))
+    files = sorted(p for p in Path(sys.argv[1]).rglob("*") if p.suffix in (".exr", ".png", ".hdr", ".npy"))
     if not files:
-        print(f"no .exr or .png below {sys.argv[1]}", file=sys.stderr)
+        print(f"no picture below {sys.argv[1]}", file=sys.stderr)
         return 2
     failed = 0
     for path in files:

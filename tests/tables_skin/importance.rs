@@ -17,6 +17,7 @@ fn table(model: &str, params: &str, layout: &str, more: &[&str]) -> Bound {
         kind: "importance".into(),
         model: Some(model.into()),
         layout: Some(layout.into()),
+        channels: None,
         params: serde_json::from_str(params).unwrap(),
         axes: Some(["u", "v", "mu"].iter().chain(more).map(axis).collect()),
     }

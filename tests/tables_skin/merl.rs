@@ -109,7 +109,7 @@ fn file(model: &str, params: &str) -> Vec<u8> {
         ..Request::default()
     };
     let table = TableRequest {
-        outputs: vec![Output { container: "merl".into(), storage: Storage::Float.id().into() }],
+        outputs: vec![Output::new("merl", Storage::Float.id())],
         reconstruction: false,
         ..TableRequest::new("measured", request)
     };
@@ -210,6 +210,8 @@ fn what_does_not_fit_is_refused() {
         grid: &grid,
         channels: &channels,
         values: &[0.0; 64],
+        errors: &[0.0; 64],
+        options: &[],
         storage: Storage::Float,
         provenance_json: "{}",
     };

@@ -1,0 +1,149 @@
+//! Tables as source code: an array and a function that reads it as a GPU reads a texture.
+//!
+//! The function takes one argument an axis, in the axis' own quantity (`mu`, `roughness`), and returns the channels. The
+//! domain, the warp, its coupling, the direction and the texel convention are inside: the caller needs none of them. It
+//! interpolates linearly along every axis and clamps at the edges, like [`lookup`](crate::grid::lookup), in the numbers
+//! of the array (f32 for `half` and `float`).
+//!
+//! What the function computes is described once (`program.rs`) and written by one file a language.
+//!
+//! The first line is a comment with the provenance as JSON text, in ASCII.
+
+mod c;
+mod cpp;
+mod expression;
+mod glsl;
+mod hlsl;
+mod js;
+mod program;
+mod rust;
+mod wgsl;
+
+pub use c::C;
+pub use cpp::Cpp;
+pub use glsl::Glsl;
+pub use hlsl::Hlsl;
+pub use js::Js;
+pub use rust::Rust;
+pub use wgsl::Wgsl;
+
+use super::{EncodeError, EncodeInput, Encoder, Storage};
+use program::Program;
+use std::fmt::Debug;
+
+/// Functions that an expression calls.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Function {
+    Sqrt,
+    Pow,
+    Cos,
+    Min,
+    Max,
+}
+
+/// How a language writes what a program says. Infix operators are the same in all of them.
+pub trait Syntax: Debug + Send + Sync + 'static {
+    /// Id of the container.
+    fn id(&self) -> &'static str;
+    /// File name extension.
+    fn extension(&self) -> &'static str {
+        self.id()
+    }
+    /// True if it has 64-bit floats.
+    fn has_double(&self) -> bool;
+    /// Most channels that its function returns.
+    fn most_channels(&self) -> usize;
+    /// Behind a number: `f`.
+    fn suffix(&self, double: bool) -> &'static str {
+        let _ = double;
+        ""
+    }
+    /// A call, with the arguments written.
+    #[doc(hidden)]
+    fn call(&self, call: &Call<'_>) -> String;
+    /// A constant that is an index.
+    fn int(&self, name: &str, value: &str) -> String;
+    /// A constant that is a number.
+    fn float(&self, name: &str, value: &str, double: bool) -> String;
+    /// The integer part of a number that is not negative.
+    fn truncate(&self, x: &str) -> String;
+    /// An index as a number.
+    fn widen(&self, i: &str, double: bool) -> String;
+    /// The smaller of an index and a number.
+    fn least(&self, i: &str, last: usize) -> String;
+    /// The file, but for the comments above it.
+    #[doc(hidden)]
+    fn file(&self, parts: &Parts<'_>) -> String;
+}
+
+/// A call of a function.
+#[derive(Debug)]
+pub struct Call<'a> {
+    pub(super) function: Function,
+    pub(super) arguments: &'a [String],
+    pub(super) double: bool,
+}
+
+/// The parts of a file.
+#[derive(Debug)]
+pub struct Parts<'a> {
+    /// Stem of the names.
+    pub(super) name: &'a str,
+    /// Argument names.
+    pub(super) arguments: &'a [&'static str],
+    /// The numbers, in lines.
+    pub(super) numbers: String,
+    pub(super) count: usize,
+    pub(super) double: bool,
+    /// Indented lines of the function, before its result.
+    pub(super) body: String,
+    /// One expression a channel.
+    pub(super) results: Vec<String>,
+}
+
+impl Parts<'_> {
+    /// `a, b` with something in front of and behind each argument.
+    pub(super) fn arguments(&self, before: &str, behind: &str) -> String {
+        let all: Vec<String> = self.arguments.iter().map(|a| format!("{before}{a}{behind}")).collect();
+        all.join(", ")
+    }
+
+    /// The results as indented lines, with commas between.
+    pub(super) fn results(&self) -> String {
+        self.results.iter().map(|r| format!("        {r}")).collect::<Vec<_>>().join(",\n")
+    }
+}
+
+/// A language as a container.
+#[derive(Debug, Clone, Copy)]
+pub struct Code<S>(
+    /// Its syntax.
+    pub S,
+);
+
+impl<S: Syntax> Encoder for Code<S> {
+    fn id(&self) -> &'static str {
+        self.0.id()
+    }
+
+    fn extension(&self) -> &'static str {
+        self.0.extension()
+    }
+
+    fn storages(&self) -> &'static [Storage] {
+        let all = &[Storage::Float, Storage::Half, Storage::Double];
+        if self.0.has_double() { all } else { &all[..2] }
+    }
+
+    fn most_channels(&self) -> usize {
+        self.0.most_channels()
+    }
+
+    fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
+        input.check(self)?;
+        let program = Program::new(input)?;
+        let parts = program.parts(&self.0);
+        let comment = program.comment(input);
+        Ok(format!("{comment}\n{}", self.0.file(&parts)).into_bytes())
+    }
+}
