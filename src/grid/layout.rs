@@ -136,12 +136,6 @@ impl Grid {
         self.at(|i, axis, coupled| axis.value_at(x[i], coupled))
     }
 
-    /// The point at base values, one an axis.
-    #[must_use]
-    pub fn point(&self, base: &[f64]) -> Point {
-        self.at(|i, _, _| base[i])
-    }
-
     fn at(&self, value: impl Fn(usize, &Axis, f64) -> f64) -> Point {
         let mut values = [0.0; MAX_AXES];
         for &i in &self.order {
