@@ -115,7 +115,7 @@ impl Range {
 /// `2 int E mu dmu`, averaged over the azimuth for a model that depends on it, with the order raised until two orders agree; inner errors are added by their weights.
 ///
 /// # Errors
-/// As [`integrate`](super::integral::integrate).
+/// As [`integrate`].
 pub fn average(model: &dyn Brdf, scale: f64, tolerance: f64) -> Result<Estimate, TexelError> {
     let range = Range::of(scale, f64::NAN, false);
     average_of(&range, model.turns(), 1, tolerance, |view, tolerance| {

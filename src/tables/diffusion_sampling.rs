@@ -27,7 +27,7 @@ pub static INFO: TableInfo = TableInfo {
             ChannelInfo { id: "radius.b", meaning: "r(u), mm, blue", range: [0.0, 3.4e38] },
         ],
     }],
-    mix: Mix::Free(&[]),
+    mix: Mix::Layouts,
     model: ModelUse::None,
     params: profile::PARAMS,
     laws: &["finite", "range", "monotone"],

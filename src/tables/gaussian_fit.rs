@@ -57,7 +57,7 @@ pub static INFO: TableInfo = TableInfo {
             ],
         },
     ],
-    mix: Mix::Free(&[]),
+    mix: Mix::Layouts,
     model: ModelUse::None,
     params: profile::PARAMS,
     laws: &["finite", "range", "total"],

@@ -24,7 +24,7 @@ pub static INFO: TableInfo = TableInfo {
         doc: "PH = (2 texel)^10",
         channels: &[ChannelInfo { id: "kelemen.texel", meaning: "0.5 PH(mu_m, m)^0.1", range: [0.0, 1.0] }],
     }],
-    mix: Mix::Free(&[]),
+    mix: Mix::Layouts,
     model: ModelUse::None,
     params: &[],
     laws: &["finite", "range"],

@@ -33,7 +33,7 @@ pub static INFO: TableInfo = TableInfo {
         doc: "part of the facets facing a direction that is not hidden",
         channels: &[ChannelInfo { id: "g1", meaning: "G1(mu, alpha)", range: [0.0, 1.0] }],
     }],
-    mix: Mix::Free(&[]),
+    mix: Mix::Layouts,
     model: ModelUse::None,
     params: &[DISTRIBUTION],
     laws: &["finite", "range", "monotone"],

@@ -43,7 +43,7 @@ pub static INFO: TableInfo = TableInfo {
             channel("merl.b", "blue f, 1/sr"),
         ],
     }],
-    mix: Mix::Free(&[]),
+    mix: Mix::Layouts,
     model: ModelUse::Any("ggx"),
     params: &[
         Param::number("red", "c_r", "factor of the red channel", [0.0, 1.0], Preset::Value(1.0)),

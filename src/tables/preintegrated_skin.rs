@@ -46,7 +46,7 @@ pub static INFO: TableInfo = TableInfo {
             ChannelInfo { id: "skin.b", meaning: "D of blue light", range: [0.0, 1.0] },
         ],
     }],
-    mix: Mix::Free(&[]),
+    mix: Mix::Layouts,
     model: ModelUse::None,
     params: &PARAMS,
     laws: &["finite", "range", "total"],

@@ -5,7 +5,7 @@ use crate::support::{refused, request};
 use brdfbake::grid::{Axis, Texel};
 use brdfbake::recipe::parse;
 use brdfbake::tables::spec::Request;
-use brdfbake::tables::{Bound, TABLES, TableInfo};
+use brdfbake::tables::{Bound, Mix, TABLES, TableInfo};
 use brdfbake::verify;
 
 const TOLERANCE: f64 = 1e-4;
@@ -28,7 +28,8 @@ fn bound(
 
 #[test]
 fn a_channel_has_the_same_value_wherever_it_stands() {
-    for kind in TABLES {
+    // kinds whose layouts are different integrals refuse other sets
+    for kind in TABLES.iter().filter(|k| matches!(k.mix, Mix::Free(_))) {
         for layout in kind.layouts {
             // the default model of albedos does not transmit
             let through = layout.channels.iter().any(|c| c.id.starts_with('t') || c.id.ends_with(".inside"));
