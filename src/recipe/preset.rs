@@ -54,6 +54,7 @@ pub static PRESETS: &[Preset] = &[
     ),
     preset!("colour", "metals and thin films in colour, Schlick's factor, masking and visibility"),
     preset!("tabulated", "GGX as a MERL binary, and as directions that sample it"),
+    preset!("everything", "every kind of table on its own axes: a check of the whole, and a catalogue"),
     preset!("kelemen-skin", "the Beckmann texture of the skin shader of GPU Gems 3, chapter 14"),
 ];
 

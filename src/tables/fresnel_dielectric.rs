@@ -67,7 +67,7 @@ fn default_axes() -> Vec<Axis> {
     let axis = |id: &str, len, domain: [f64; 2], warp| {
         Quantity::find(id).map(|q| Axis::new(q, len, Texel::Endpoint).over(domain).warped(warp))
     };
-    [axis("mu", 128, UNIT, Warp::Power(0.5)), axis("eta", 32, [1.0, 2.5], Warp::Linear)]
+    [axis("mu", 128, UNIT, Warp::Power(0.5)), axis("eta", 32, [1.2, 2.5], Warp::Linear)]
         .into_iter()
         .flatten()
         .collect()

@@ -79,3 +79,12 @@ fn the_albedo_of_the_default_preset_is_read_as_well_as_its_comment_says() {
         assert!(error < 3.1e-4, "E({mu}, {alpha}) = {} is off by {error:e}", got[0]);
     }
 }
+
+#[test]
+fn the_preset_everything_has_every_kind_of_table() {
+    let plan = preset("everything").unwrap().plan().unwrap();
+    let kinds: Vec<&str> = plan.tables.iter().map(|t| t.bound.spec.kind.id).collect();
+    for kind in brdfbake::tables::TABLES {
+        assert!(kinds.contains(&kind.id), "{} is missing from presets/everything.toml", kind.id);
+    }
+}
