@@ -83,7 +83,7 @@ impl From<PipelineError> for Failure {
             | PipelineError::Laws(_)
             | PipelineError::Range { .. } => Exit::Failed,
             PipelineError::Bake { .. } => Exit::Input,
-            PipelineError::Encode { .. } => Exit::Unsupported,
+            PipelineError::Encode { .. } | PipelineError::Fit { .. } => Exit::Unsupported,
             PipelineError::Write(_) => Exit::Io,
             _ => Exit::Internal,
         };

@@ -155,6 +155,9 @@ fn line(event: &Event<'_>) -> Option<String> {
                     if let Some(p) = r.practical {
                         text.push_str(&format!(" (practical {p:.1e})"));
                     }
+                    for c in &r.choices {
+                        text.push_str(&format!("; {} {:.1e}, mean {:.1e}", c.texels, c.whole, c.whole_mean));
+                    }
                 }
             }
             if *missed > 0 {

@@ -3,9 +3,13 @@
 
 use super::layout::{Grid, MAX_AXES, Point};
 
-/// Reads all channels at `point` into `out`. `values` is `[texel][channel]`, channel fastest.
-pub fn read(grid: &Grid, values: &[f64], point: &Point, out: &mut [f64]) {
-    let channels = out.len();
+/// Most texels that one reading touches.
+pub const MAX_CORNERS: usize = 1 << MAX_AXES;
+
+/// The texels that a reader at `point` adds up, with their weights: the first `n` entries, n = 2^axes. Corners with
+/// weight 0 are there too.
+#[must_use]
+pub fn corners(grid: &Grid, point: &Point) -> ([(usize, f64); MAX_CORNERS], usize) {
     let index = grid.index(point);
     let n = grid.axes().len();
     let mut low = [0usize; MAX_AXES];
@@ -18,8 +22,8 @@ pub fn read(grid: &Grid, values: &[f64], point: &Point, out: &mut [f64]) {
         high[i] = (low[i] + 1).min(last);
         t[i] = f - super::axis::count(low[i]);
     }
-    out.fill(0.0);
-    for corner in 0..1usize << n {
+    let mut all = [(0, 0.0); MAX_CORNERS];
+    for (corner, entry) in all.iter_mut().enumerate().take(1 << n) {
         let mut weight = 1.0;
         let mut texel = 0;
         let mut stride = 1;
@@ -29,7 +33,18 @@ pub fn read(grid: &Grid, values: &[f64], point: &Point, out: &mut [f64]) {
             texel += stride * if upper { high[i] } else { low[i] };
             stride *= axis.len;
         }
-        if weight > 0.0 {
+        *entry = (texel, weight);
+    }
+    (all, 1 << n)
+}
+
+/// Reads all channels at `point` into `out`. `values` is `[texel][channel]`, channel fastest.
+pub fn read(grid: &Grid, values: &[f64], point: &Point, out: &mut [f64]) {
+    let channels = out.len();
+    let (corners, n) = corners(grid, point);
+    out.fill(0.0);
+    for (texel, weight) in &corners[..n] {
+        if *weight > 0.0 {
             for (c, o) in out.iter_mut().enumerate() {
                 *o += weight * values[texel * channels + c];
             }

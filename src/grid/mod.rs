@@ -4,6 +4,7 @@
 //! reports, so that no two of them can disagree.
 
 pub mod axis;
+pub mod fit;
 pub mod layout;
 pub mod lookup;
 pub mod provenance;

@@ -43,6 +43,9 @@ pub struct Provenance {
     /// How far a bilinear reader is from fresh integrals.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub reconstruction: Option<Reconstruction>,
+    /// What the texels hold, where they are not the values at their places.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub texels: Option<TexelRecord>,
     /// How the lengths of the axes were found, if they were searched.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub size: Option<SizeRecord>,
@@ -147,7 +150,7 @@ pub struct Integration {
 pub struct Encoding {
     /// Storage id: `half`, `float`, `unorm16`, ...
     pub storage: String,
-    /// Largest difference between integral and stored value.
+    /// Largest difference between the value (the integral, or what was fitted to it) and the stored one.
     pub largest_error: f64,
     /// Values of the components of a pixel that follow the channels and hold none: `[0, 1]` for two channels as RGBA.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
@@ -164,6 +167,36 @@ pub struct Reconstruction {
     /// Over the whole domain.
     pub whole: Spread,
     /// Over `mu >= 0.05` and `roughness >= 0.09`, if the table has such axes.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub practical: Option<Spread>,
+}
+
+/// What fitted texels hold, and what that gains.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TexelRecord {
+    /// What the recipe asks for: `least-squares` or `minimax`.
+    pub asked: String,
+    /// What this file holds: that, or `exact` where fitting gained nothing.
+    pub held: String,
+    /// What it means for who uses the numbers.
+    pub meaning: String,
+    /// Points of the truth that they were fitted to, weighted by their area in axis coordinates.
+    pub samples: u64,
+    /// Largest difference between a texel and the value at its place.
+    pub largest_change: f64,
+    /// Errors of reading for each choice, as stored; none if the recipe does not measure them.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub choices: Vec<ChoiceRecord>,
+}
+
+/// Errors of reading for one choice of texels.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ChoiceRecord {
+    /// `exact`, `least-squares` or `minimax`.
+    pub texels: String,
+    /// Over the whole domain.
+    pub whole: Spread,
+    /// Over the practical domain, if the table has such axes.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub practical: Option<Spread>,
 }

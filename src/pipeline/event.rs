@@ -1,7 +1,7 @@
 //! What a run tells while it works. One event is one line of `--message-format json`.
 
 use super::Outcome;
-use crate::grid::provenance::SizeRecord;
+use crate::grid::provenance::{ChoiceRecord, SizeRecord};
 use crate::grid::table::Extreme;
 use crate::recipe::Plan;
 use crate::verify::Finding;
@@ -163,6 +163,36 @@ pub struct ReconstructionEntry {
     pub practical: Option<f64>,
     /// Mean over the practical domain.
     pub practical_mean: Option<f64>,
+    /// Where texels are fitted: the same for each choice, in the order `exact`, `least-squares`, `minimax`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub choices: Vec<ChoiceEntry>,
+}
+
+/// Reconstruction errors of one choice of texels.
+#[derive(Debug, Clone, Serialize)]
+pub struct ChoiceEntry {
+    /// `exact`, `least-squares` or `minimax`.
+    pub texels: String,
+    /// Largest over the whole domain.
+    pub whole: f64,
+    /// Mean over the whole domain.
+    pub whole_mean: f64,
+    /// Largest over the practical domain.
+    pub practical: Option<f64>,
+    /// Mean over the practical domain.
+    pub practical_mean: Option<f64>,
+}
+
+impl From<&ChoiceRecord> for ChoiceEntry {
+    fn from(c: &ChoiceRecord) -> Self {
+        ChoiceEntry {
+            texels: c.texels.clone(),
+            whole: c.whole.largest.value,
+            whole_mean: c.whole.mean,
+            practical: c.practical.as_ref().map(|p| p.largest.value),
+            practical_mean: c.practical.as_ref().map(|p| p.mean),
+        }
+    }
 }
 
 /// Texels along each axis; 0 where the length is to be found.

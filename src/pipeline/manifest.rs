@@ -1,7 +1,7 @@
 //! `manifest.json`: what a run wrote, table by table, with the facts that the files carry themselves.
 
 use crate::grid::Provenance;
-use crate::grid::provenance::{Encoding, Reconstruction, SCHEMA};
+use crate::grid::provenance::{Encoding, Reconstruction, SCHEMA, TexelRecord};
 use crate::recipe::Plan;
 use serde::{Deserialize, Serialize};
 
@@ -51,6 +51,9 @@ pub struct FileRecord {
     /// Errors of the reader's reconstruction from this file.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub reconstruction: Option<Reconstruction>,
+    /// What the texels of this file hold, where they are fitted.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub texels: Option<TexelRecord>,
 }
 
 impl Manifest {

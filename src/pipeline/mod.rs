@@ -3,6 +3,7 @@
 //! The pipeline never prints: it sends [`Event`]s to a [`Progress`].
 
 mod event;
+mod fit;
 mod manifest;
 mod size;
 mod table;
@@ -55,6 +56,19 @@ pub enum PipelineError {
         longest: usize,
         /// Least error of all trials.
         reached: f64,
+    },
+    /// Too many points to fit texels to.
+    #[error(
+        "table {table}: its texels cannot be fitted: that takes {points} integrals, and at most {limit} are allowed. Take shorter \
+         axes, or `texels = \"exact\"`"
+    )]
+    Fit {
+        /// Table name.
+        table: String,
+        /// Points that are needed.
+        points: usize,
+        /// Most that are allowed.
+        limit: usize,
     },
     /// A grid of the search that cannot be.
     #[error("table {table}: {message}")]

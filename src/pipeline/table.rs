@@ -1,11 +1,16 @@
 //! One table: bake, verify, round, compare between texels, encode in memory.
 
-use super::event::ReconstructionEntry;
+use super::event::{ChoiceEntry, ReconstructionEntry};
+use super::fit::{self, Fitted};
 use super::manifest::tool;
 use super::{Event, Extremum, FileRecord, PipelineError, Progress, TableRecord, size};
-use crate::encode::{self, EncodeInput, Shape, Storage};
-use crate::grid::Provenance;
-use crate::grid::provenance::{AxisRecord, Encoding, Integration, RecipeId, SCHEMA, SizeRecord, Subject};
+use crate::encode::{self, EncodeInput, Quantised, RangeFault, Shape, Storage};
+use crate::grid::fit::Objective;
+use crate::grid::provenance::{
+    AxisRecord, ChoiceRecord, Encoding, Integration, RecipeId, Reconstruction, SCHEMA, SizeRecord, Subject,
+    TexelRecord,
+};
+use crate::grid::{Provenance, Table};
 use crate::models::source_lines;
 use crate::recipe::{Output, Plan, PlannedTable};
 use crate::tables::driver::{self, Options};
@@ -64,9 +69,17 @@ pub(super) fn make(
         files: Vec::new(),
     };
     let names = super::file_names(planned);
+    // the laws are those of the integrals; what is fitted to them is judged by how it reads
+    let fitted = match planned.texels {
+        Objective::Exact => None,
+        _ => Some(fit::fit(planned, verified.table(), cancel)?),
+    };
     let probe = planned.reconstruction.then(|| Probe::new(&planned.bound, planned.tolerance, COMPARED));
     for (output, file) in planned.outputs.iter().zip(names) {
-        let (record, bytes) = encode_output(planned, output, &verified, &provenance, probe.as_ref(), &file)?;
+        let (record, bytes) = {
+            let texels = Texels { table: verified.table(), fitted: fitted.as_ref(), probe: probe.as_ref() };
+            encode_output(planned, output, &texels, &provenance, &file)?
+        };
         made.record.files.push(record);
         made.files.push((file, bytes));
     }
@@ -87,15 +100,72 @@ fn size_found<'a>(found: &'a PlannedTable, record: &'a SizeRecord, index: usize,
     }
 }
 
+/// The integrals of a table, what was fitted to them, and what measures how either reads.
+struct Texels<'a> {
+    table: &'a Table,
+    fitted: Option<&'a Fitted>,
+    probe: Option<&'a Probe<'a>>,
+}
+
+/// The numbers of a file.
+struct Chosen {
+    stored: Quantised,
+    reconstruction: Option<Reconstruction>,
+    texels: Option<TexelRecord>,
+}
+
+impl Texels<'_> {
+    /// Rounds and measures what is asked for, and all choices where texels are fitted. Minimax that reads no better than
+    /// the integrals, as stored, gives way to them.
+    fn choose(&self, asked: Objective, storage: Storage) -> Result<Chosen, RangeFault> {
+        let Some(fitted) = self.fitted else {
+            let stored = encode::quantise_table(self.table, storage)?;
+            let reconstruction = self.probe.map(|p| p.measure(&stored.values));
+            return Ok(Chosen { stored, reconstruction, texels: None });
+        };
+        let mut all = Vec::new();
+        for objective in Objective::ALL {
+            let values = fitted.values(objective, &self.table.values).to_vec();
+            let stored = encode::quantise_table(&Table { values, ..self.table.clone() }, storage)?;
+            let measured = self.probe.map(|p| p.measure(&stored.values));
+            all.push((objective, stored, measured));
+        }
+        let largest = |i: usize| all[i].2.as_ref().map(|r| r.whole.largest.value);
+        let no_better = largest(0).zip(largest(2)).is_some_and(|(exact, minimax)| minimax >= exact);
+        let held = if asked == Objective::Minimax && no_better { Objective::Exact } else { asked };
+        let choices = all
+            .iter()
+            .filter_map(|(o, _, measured)| Some((o, measured.as_ref()?)))
+            .map(|(o, r)| ChoiceRecord {
+                texels: o.id().to_owned(),
+                whole: r.whole.clone(),
+                practical: r.practical.clone(),
+            })
+            .collect();
+        let values = fitted.values(held, &self.table.values);
+        let change = values.iter().zip(&self.table.values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let texels = Some(TexelRecord {
+            asked: asked.id().to_owned(),
+            held: held.id().to_owned(),
+            meaning: held.meaning().to_owned(),
+            samples: fitted.samples,
+            largest_change: change,
+            choices,
+        });
+        let index = Objective::ALL.iter().position(|o| *o == held).unwrap_or(0);
+        let (_, stored, reconstruction) = all.swap_remove(index);
+        Ok(Chosen { stored, reconstruction, texels })
+    }
+}
+
 fn encode_output(
     planned: &PlannedTable,
     output: &Output,
-    verified: &Verified,
+    texels: &Texels<'_>,
     provenance: &Provenance,
-    probe: Option<&Probe<'_>>,
     file: &str,
 ) -> Result<(FileRecord, Vec<u8>), PipelineError> {
-    let table = verified.table();
+    let table = texels.table;
     let (name, label) = (planned.name.clone(), output.to_string());
     let unknown = || PipelineError::Encode {
         table: planned.name.clone(),
@@ -104,11 +174,9 @@ fn encode_output(
     };
     let encoder = encode::encoder(&output.container).ok_or_else(unknown)?;
     let storage = Storage::find(&output.storage).ok_or_else(unknown)?;
-    let stored = encode::quantise_table(table, storage).map_err(|error| PipelineError::Range {
-        table: name.clone(),
-        output: label.clone(),
-        error,
-    })?;
+    let Chosen { stored, reconstruction, texels } = texels
+        .choose(planned.texels, storage)
+        .map_err(|error| PipelineError::Range { table: name.clone(), output: label.clone(), error })?;
     let options = output.file_options();
     let shape = Shape { grid: &table.grid, channels: table.channels.len(), storage, options: &options };
     let encoding = Encoding {
@@ -116,10 +184,10 @@ fn encode_output(
         largest_error: stored.largest_error.value,
         fill: shape.fill(encoder.components(&shape)),
     };
-    let reconstruction = probe.map(|p| p.measure(&stored.values));
     let provenance = Provenance {
         encoding: Some(encoding.clone()),
         reconstruction: reconstruction.clone(),
+        texels: texels.clone(),
         ..provenance.clone()
     };
     let json = serde_json::to_string(&provenance)
@@ -128,7 +196,8 @@ fn encode_output(
         grid: &table.grid,
         channels: &table.channels,
         values: &stored.values,
-        errors: &table.errors,
+        // the estimates are those of the integrals
+        errors: if texels.as_ref().is_some_and(|t| t.held != "exact") { &[] } else { &table.errors },
         storage,
         options: &options,
         provenance_json: &json,
@@ -145,6 +214,7 @@ fn encode_output(
         blake3: blake3::hash(&bytes).to_hex().to_string(),
         encoding,
         reconstruction,
+        texels,
     };
     Ok((record, bytes))
 }
@@ -178,6 +248,7 @@ fn provenance(plan: &Plan, planned: &PlannedTable, verified: &Verified) -> Prove
         residuals: baker.residuals(table),
         encoding: None,
         reconstruction: None,
+        texels: None,
         size: planned.found.clone(),
         laws: verified.laws().to_vec(),
         verified: verified.waived().is_empty(),
@@ -212,6 +283,7 @@ fn finished<'a>(
             whole_mean: r.whole.mean,
             practical: r.practical.as_ref().map(|p| p.largest.value),
             practical_mean: r.practical.as_ref().map(|p| p.mean),
+            choices: f.texels.iter().flat_map(|t| &t.choices).map(ChoiceEntry::from).collect(),
         })
     });
     Event::TableFinished {

@@ -7,6 +7,7 @@ use super::section::{Section, wrong};
 use super::sizing::{self, Sizing};
 use super::{MAX_TABLES, formats};
 use crate::grid::Axis;
+use crate::grid::fit::Objective;
 use crate::grid::provenance::Waiver;
 use crate::tables::driver::OnMiss;
 use serde_json::{Map, Value as Json};
@@ -25,6 +26,7 @@ const TABLE: &[&str] = &[
     "on-miss",
     "reconstruction",
     "size",
+    "texels",
     "waive",
     "axis",
 ];
@@ -55,6 +57,7 @@ pub(super) struct Entry {
     pub(super) reconstruction: bool,
     /// Axes without a length are searched.
     pub(super) size: Option<Sizing>,
+    pub(super) texels: Objective,
     pub(super) waivers: Vec<Option<Waiver>>,
     /// None: the kind's own. An axis that could not be read is none.
     pub(super) axes: Option<Vec<Option<Axis>>>,
@@ -88,6 +91,10 @@ fn entry(table: &DeTable<'_>, path: String, faults: &mut Faults) -> Entry {
     let on_miss = section.word("on-miss", &[("fail", OnMiss::Fail), ("report", OnMiss::Report)], faults);
     let mut size = sizing::read(&section, faults);
     let axes = axes(&section, size.as_mut(), faults);
+    let texels = section.word("texels", &Objective::ALL.map(|o| (o.id(), o)), faults).unwrap_or_default();
+    if size.is_some() && texels != Objective::Exact {
+        faults.value(section.path("texels"), Fault::FittedSize);
+    }
     Entry {
         name: section.text("name", faults),
         kind: section.text("kind", faults),
@@ -103,6 +110,7 @@ fn entry(table: &DeTable<'_>, path: String, faults: &mut Faults) -> Entry {
             .unwrap_or(true),
         waivers: waivers(&section, faults),
         size,
+        texels,
         axes,
         path,
     }

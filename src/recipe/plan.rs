@@ -8,6 +8,7 @@ use super::outputs::{self, Output};
 use super::section::unknown_word;
 use super::sizing::Sizing;
 use super::{TOLERANCE, name};
+use crate::grid::fit::Objective;
 use crate::grid::provenance::{SizeRecord, Waiver};
 use crate::tables::driver::OnMiss;
 use crate::tables::spec::Request;
@@ -46,6 +47,8 @@ pub struct PlannedTable {
     pub reconstruction: bool,
     /// What its size must achieve, if that is to be found; the axes then have lengths that stand in.
     pub size: Option<Sizing>,
+    /// What its texels hold.
+    pub texels: Objective,
     /// How its size was found, once it is.
     pub found: Option<SizeRecord>,
     /// Laws that it may break, in the order of [`LAWS`](crate::verify::LAWS).
@@ -69,6 +72,7 @@ impl PlannedTable {
             outputs: self.outputs.clone(),
             reconstruction: self.reconstruction,
             size: self.size.clone(),
+            texels: self.texels,
             found: Some(found),
             waivers: self.waivers.clone(),
             canonical: self.canonical.clone(),
@@ -94,6 +98,8 @@ pub struct TableRequest {
     pub reconstruction: bool,
     /// What its size must achieve. With axes in the request, [`Sizing::axes`] are those whose lengths stand in.
     pub size: Option<Sizing>,
+    /// What its texels hold; the values at their places, unless `size` is none and this says otherwise.
+    pub texels: Objective,
     /// Laws that it may break.
     pub waivers: Vec<Waiver>,
 }
@@ -110,6 +116,7 @@ impl TableRequest {
             outputs: vec![outputs::default()],
             reconstruction: true,
             size: None,
+            texels: Objective::Exact,
             waivers: Vec::new(),
         }
     }
@@ -204,6 +211,7 @@ fn entry(i: usize, table: TableRequest) -> Entry {
         on_miss: table.on_miss,
         reconstruction: table.reconstruction,
         size: table.size,
+        texels: table.texels,
         waivers: table.waivers.into_iter().map(Some).collect(),
         axes: axes.map(|axes| axes.into_iter().map(Some).collect()),
     }
@@ -277,6 +285,7 @@ fn table(entry: Entry, tolerance: Option<f64>, faults: &mut Faults) -> Option<Pl
         outputs,
         reconstruction: entry.reconstruction,
         size: None,
+        texels: entry.texels,
         found: None,
         waivers: waivers?,
         canonical: Json::Null,

@@ -136,6 +136,20 @@ fn quality(lines: &mut Lines, p: &Provenance) {
             lines.item("", &format!("components without channel hold {fill}"));
         }
     }
+    if let Some(t) = &p.texels {
+        lines.item("texels", &format!("{}: {}", t.held, t.meaning));
+        if t.held != t.asked {
+            lines.item("", &format!("{} was asked for and reads no better", t.asked));
+        }
+        let (n, change) = (t.samples, number(t.largest_change));
+        lines.item("", &format!("fitted to {n} integrals, at most {change} from the values at their places"));
+        for c in &t.choices {
+            lines.item("", &format!("{} texels, whole domain: {}", c.texels, spread(&c.whole)));
+            if let Some(practical) = &c.practical {
+                lines.item("", &format!("{} texels, practical: {}", c.texels, spread(practical)));
+            }
+        }
+    }
     if let Some(r) = &p.reconstruction {
         lines.plain("Reading between texels, against fresh integrals");
         lines.item("filter", &format!("{}, {} points", r.filter, r.points));

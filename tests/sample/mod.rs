@@ -62,6 +62,7 @@ pub(crate) fn provenance(table: &Table, storage: Storage) -> Provenance {
         }),
         residuals: Vec::new(),
         reconstruction: None,
+        texels: None,
         size: None,
         laws: vec![LawRecord {
             law: "energy".to_owned(),

@@ -1,0 +1,126 @@
+//! Texels fitted to the reader: closed forms in one dimension, gains on split sums, the same bytes for any number of
+//! threads.
+#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "test")]
+
+use brdfbake::encode::read;
+use brdfbake::grid::fit::{Samples, places};
+use brdfbake::grid::layout::Point;
+use brdfbake::grid::provenance::{ChoiceRecord, TexelRecord};
+use brdfbake::grid::{Axis, Grid, Quantity, Texel, lookup};
+use brdfbake::pipeline::{FileRecord, Settings, Silent, run};
+use brdfbake::recipe::{Plan, parse};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+fn line(len: usize, texel: Texel) -> Grid {
+    Grid::new(vec![Axis::new(Quantity::find("mu").unwrap(), len, texel)]).unwrap()
+}
+
+/// Samples of f on a line, the truth there, and the exact texels.
+fn sampled(grid: &Grid, f: impl Fn(f64) -> f64) -> (Samples, Vec<f64>, Vec<f64>) {
+    let points: Vec<(Point, f64)> =
+        places(grid, 4).iter().map(|(x, area)| (grid.at_coordinates(x), *area)).collect();
+    let truth = points.iter().map(|(p, _)| f(p.values()[0])).collect();
+    let exact = (0..grid.len()).map(|t| f(grid.texel(t).values()[0])).collect();
+    (Samples::new(grid, points.iter().map(|(p, a)| (p, *a))), truth, exact)
+}
+
+const ALL: [f64; 2] = [-1e9, 1e9];
+
+#[test]
+fn the_areas_add_up_to_the_domain() {
+    for grid in [line(7, Texel::Center), line(7, Texel::Endpoint)] {
+        let sum: f64 = places(&grid, 4).iter().map(|p| p.1).sum();
+        assert!((sum - 1.0).abs() < 1e-14, "{sum}");
+    }
+}
+
+#[test]
+fn least_squares_of_a_parabola_are_its_projection() {
+    // the line nearest to x^2 on [0, 1] in the mean square is x - 1/6
+    let grid = line(2, Texel::Endpoint);
+    let (samples, truth, exact) = sampled(&grid, |x| x * x);
+    let fit = samples.least_squares(&truth, &exact, ALL);
+    assert!((fit[0] + 1.0 / 6.0).abs() < 1e-12 && (fit[1] - 5.0 / 6.0).abs() < 1e-12, "{fit:?}");
+    // far from the ends a linear spline of spacing h lies h^2 / 6 below x^2 at its knots
+    let n = 65;
+    let grid = line(n, Texel::Endpoint);
+    let (samples, truth, exact) = sampled(&grid, |x| x * x);
+    let fit = samples.least_squares(&truth, &exact, ALL);
+    let h = 1.0 / (n - 1) as f64;
+    assert!((exact[n / 2] - fit[n / 2] - h * h / 6.0).abs() < 1e-10 * h * h, "{}", exact[n / 2] - fit[n / 2]);
+}
+
+#[test]
+fn minimax_of_a_parabola_halves_its_error() {
+    // the chord of x^2 over a cell is off by h^2 / 4 at most; moved down by half of that, by h^2 / 8, which is best
+    for n in [2, 9, 33] {
+        let grid = line(n, Texel::Endpoint);
+        let (samples, truth, exact) = sampled(&grid, |x| x * x);
+        let h = 1.0 / (n - 1) as f64;
+        assert!((samples.largest(&exact, &truth) - h * h / 4.0).abs() < 1e-14);
+        let got = samples.largest(&samples.minimax(&truth, &exact, ALL), &truth) / (h * h);
+        assert!((0.125 - 1e-12..0.130).contains(&got), "{n}: {got} h^2");
+    }
+}
+
+#[test]
+fn a_straight_line_stays_what_it_is() {
+    let grid = line(6, Texel::Endpoint);
+    let (samples, truth, exact) = sampled(&grid, |x| 0.25 + 0.5 * x);
+    for fit in [samples.least_squares(&truth, &exact, ALL), samples.minimax(&truth, &exact, ALL)] {
+        assert!(fit.iter().zip(&exact).all(|(a, b)| (a - b).abs() < 1e-14), "{fit:?}");
+    }
+}
+
+#[test]
+fn fits_stay_in_the_range_and_the_others_are_solved_again() {
+    // without a bound the first texel of x^2 would be -1/6; held at 0 the best line is x (3/4): int x^3 / int x^2
+    let grid = line(2, Texel::Endpoint);
+    let (samples, truth, exact) = sampled(&grid, |x| x * x);
+    let fit = samples.least_squares(&truth, &exact, [0.0, 1.0]);
+    assert!(fit[0].abs() < 1e-14 && (fit[1] - 0.75).abs() < 1e-12, "{fit:?}");
+    let fit = samples.minimax(&truth, &exact, [0.0, 1.0]);
+    assert!(fit.iter().all(|v| (0.0..=1.0).contains(v)), "{fit:?}");
+}
+
+fn recipe(texels: &str, len: usize, texel: &str, more: &str) -> Plan {
+    let source = format!(
+        "name = 'x'\n[[table]]\nkind = 'dfg'\nname = 't'\ntexels = '{texels}'\n{more}\n\
+         [[table.axis]]\nid = 'mu'\nlength = {len}\ntexel = '{texel}'\n\
+         [[table.axis]]\nid = 'roughness'\nlength = {len}\ntexel = '{texel}'\n"
+    );
+    parse(&source, "x.toml").unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn bake(plan: &Plan, out: &Path, jobs: usize) -> FileRecord {
+    let settings = Settings { out: out.to_path_buf(), jobs: Some(jobs) };
+    let outcome = run(plan, &settings, &AtomicBool::new(false), &Silent).unwrap();
+    outcome.manifest.tables[0].files[0].clone()
+}
+
+fn fitted(texels: &str, len: usize, texel: &str, more: &str) -> TexelRecord {
+    let dir = tempfile::tempdir().unwrap();
+    bake(&recipe(texels, len, texel, more), dir.path(), 2).texels.unwrap()
+}
+
+fn figures(c: &ChoiceRecord) -> [f64; 4] {
+    let p = c.practical.as_ref().unwrap();
+    [c.whole.largest.value, c.whole.mean, p.largest.value, p.mean]
+}
+
+#[test]
+#[ignore = "prints the table of README"]
+fn table_of_gains() {
+    for texel in ["endpoint", "center"] {
+        for len in [16, 32, 64, 128] {
+            let start = std::time::Instant::now();
+            let record = fitted("minimax", len, texel, "");
+            eprintln!("{texel} {len}: {} integrals, {:.1} s", record.samples, start.elapsed().as_secs_f64());
+            for c in &record.choices {
+                let [w, wm, p, pm] = figures(c);
+                eprintln!("  {:14} whole {w:.2e} mean {wm:.2e} practical {p:.2e} mean {pm:.2e}", c.texels);
+            }
+        }
+    }
+}
