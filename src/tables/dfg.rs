@@ -225,9 +225,13 @@ impl Baker for Dfg {
             let share = if twice { 0.5 * tolerance } else { tolerance };
             let model = self.sweep.model(at)?;
             split = integrate(&*model, view, &self.functionals, share)?;
-            if self.sweep.info().laws.passive && self.above_one(&split) {
-                // no white albedo is above 1: this estimate is one of the few that are too small
-                let again = integrate(&*model, view, &self.functionals, 0.1 * share)?;
+            // no white albedo is above 1: such an estimate is one of the few that are too small
+            for _ in 0..3 {
+                if !(self.sweep.info().laws.passive && self.above_one(&split)) {
+                    break;
+                }
+                let finer = 0.1 * split.largest_error().min(share);
+                let again = integrate(&*model, view, &self.functionals, finer)?;
                 split =
                     Estimate { evaluations: split.evaluations.saturating_add(again.evaluations), ..again };
             }
