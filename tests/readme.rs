@@ -73,7 +73,7 @@ fn generated_parts_are_up_to_date() {
 fn commands_in_the_readme_exist() {
     let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
     assert!(readme.contains("cargo run --release -- bake\n"), "the main command");
-    for verb in ["bake", "inspect", "diff", "eval", "albedo", "laws", "plot", "list", "describe"] {
+    for verb in ["bake", "inspect", "diff", "golden", "eval", "albedo", "laws", "plot", "list", "describe"] {
         assert!(readme.contains(&format!("brdfbake {verb}")), "no example of {verb}");
     }
 }

@@ -74,7 +74,7 @@ fn report_finding(finding: &crate::verify::Finding) {
 }
 
 /// The plan of a recipe file or of a preset.
-fn plan(name: &str) -> Result<Plan, Failure> {
+pub(super) fn plan(name: &str) -> Result<Plan, Failure> {
     let looks_like_a_file = name.contains(['/', '\\', '.']);
     if !looks_like_a_file {
         if let Some(preset) = recipe::PRESETS.iter().find(|p| p.id == name) {

@@ -6,6 +6,7 @@ pub mod describe;
 pub mod diff;
 pub mod eval;
 pub mod exit;
+pub mod golden;
 pub mod inspect;
 pub mod laws;
 pub mod list;
@@ -35,6 +36,8 @@ enum Verb {
     Inspect(inspect::Args),
     /// Compare two images or two output folders.
     Diff(diff::Args),
+    /// Compare a fresh bake with committed outputs, or commit them.
+    Golden(golden::Args),
     /// Evaluate models and functions at directions read as CSV; append the value.
     Eval(eval::Args),
     /// Print the directional albedo of a model with its error estimate.
@@ -58,6 +61,7 @@ pub fn run(cli: Cli, cancel: &Arc<AtomicBool>) -> Result<Exit, Failure> {
         Verb::Bake(args) => bake::run(&args, cancel),
         Verb::Inspect(args) => inspect::run(&args),
         Verb::Diff(args) => diff::run(&args),
+        Verb::Golden(args) => golden::run(&args, cancel),
         Verb::Eval(args) => eval::run(&args),
         Verb::Albedo(args) => albedo::run(&args),
         Verb::Laws(args) => laws::run(&args),

@@ -4,6 +4,7 @@
 
 mod event;
 mod fit;
+pub mod golden;
 mod manifest;
 mod size;
 mod table;

@@ -4,6 +4,7 @@
 //! The room stands above `encode`, whose pictures and comparisons it puts into words.
 
 pub mod diff;
+pub mod difference;
 pub mod inspect;
 pub mod plot;
 pub mod text;
