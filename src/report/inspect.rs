@@ -136,6 +136,18 @@ fn quality(lines: &mut Lines, p: &Provenance) {
             lines.item("", &format!("components without channel hold {fill}"));
         }
     }
+    if let Some(s) = &p.size {
+        let warps = if s.warps_searched { ", with other warps tried" } else { "" };
+        lines.item(
+            "size",
+            &format!(
+                "found for an error of reading of {} over the {} domain{warps}; {} reached",
+                number(s.error),
+                s.domain,
+                number(s.reached)
+            ),
+        );
+    }
     if let Some(t) = &p.texels {
         lines.item("texels", &format!("{}: {}", t.held, t.meaning));
         if t.held != t.asked {
