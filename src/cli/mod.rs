@@ -6,6 +6,7 @@ pub mod describe;
 pub mod diff;
 pub mod eval;
 pub mod exit;
+pub mod fit;
 pub mod golden;
 pub mod inspect;
 pub mod laws;
@@ -46,6 +47,8 @@ enum Verb {
     Laws(laws::Args),
     /// Draw the lobe of a model as a polar plot.
     Plot(plot::Args),
+    /// Fit a formula to the split sum of a model, as shader code.
+    Fit(fit::Args),
     /// List models, functions, tables, presets, formats, laws or quantities.
     List(list::Args),
     /// Describe a model, function, table, preset, law or quantity.
@@ -66,6 +69,7 @@ pub fn run(cli: Cli, cancel: &Arc<AtomicBool>) -> Result<Exit, Failure> {
         Verb::Albedo(args) => albedo::run(&args),
         Verb::Laws(args) => laws::run(&args),
         Verb::Plot(args) => plot::run(&args, cancel),
+        Verb::Fit(args) => fit::run(&args),
         Verb::List(args) => list::run(&args),
         Verb::Describe(args) => describe::run(&args),
     }

@@ -6,9 +6,11 @@
 //! * Least squares: the v that minimises `sum w (A v - f)^2`. The weights are those of Simpson's rule in axis
 //!   coordinates (`i / (len - 1)` or `(i + 1/2) / len`, so the measure of the texture, not of mu), with panels that end
 //!   where the reading has its kinks: products of the reader's weights are integrated exactly.
-//! * Minimax: the v that minimises the largest `|A v - f|`, by least `sum w |A v - f|^p` for p rising from 3 to 64, each
-//!   by Newton steps, which are least squares with the weights `w |r|^(p - 2)`. Of all that it passes the best is kept,
-//!   so it is never worse at the samples than what it starts from.
+//! * Minimax: the v that minimises the largest `r = |A v - f| / s`, by least `sum w r^p` for p rising from 3 to 64, each
+//!   by Newton steps, which are least squares with the weights `w r^(p - 2)`. Of all that it passes the best is kept,
+//!   so its largest error at the samples is never above that of the exact values. With s = 1 everything would serve the
+//!   one worst cell (a split sum would read twice as wrong in the practical domain as before); s, from the errors of the
+//!   exact values, is the geometric mean of the largest and the largest nearby.
 //!
 //! Both stay inside the range of the channel: texels that leave it are held at its end, and the others solved again.
 //! Sums run in fixed order on one thread: the result does not depend on the number of threads.
@@ -70,6 +72,9 @@ const NEWTON: usize = 2;
 /// Least weight of a sample in the minimax, relative to the largest: where errors are far below the largest, plain least
 /// squares are left.
 const FLOOR: f64 = 1e-6;
+/// Least scale of an error in the minimax, relative to the largest error: a part of the domain that reads this well is left to
+/// least squares.
+const LEAST_SCALE: f64 = 1e-3;
 
 /// Points in axis coordinates and the part of the domain that each stands for; axis 0 runs fastest.
 ///
@@ -196,35 +201,55 @@ impl Samples {
         self.weighted(&self.area, truth, start, range)
     }
 
-    /// The values in `range` that minimise the largest error, as far as powers up to 64 go; from `start`, and never
-    /// worse than it at the samples.
+    /// The values in `range` that minimise the largest of `|A v - f| / s`, as far as powers up to 64 go; from `start`. s is
+    /// [`Samples::scale`] of the errors of `start`, so that where the table
+    /// reads well does not pay in full for where it does not. At the samples the largest error is at most that of `start`.
     #[must_use]
     pub fn minimax(&self, truth: &[f64], start: &[f64], range: [f64; 2]) -> Vec<f64> {
-        let mut best = (self.largest(start, truth), start.to_vec());
-        let mut values = self.least_squares(truth, start, range);
-        let mut keep = |values: &[f64]| {
-            let largest = self.largest(values, truth);
-            if largest < best.0 {
-                best = (largest, values.to_vec());
-            }
+        let errors = |values: &[f64]| -> Vec<f64> {
+            self.read(values).iter().zip(truth).map(|(r, f)| (r - f).abs()).collect()
         };
-        keep(&values);
+        let Some(scale) = self.scale(&errors(start)) else { return start.to_vec() };
+        let relative = |values: &[f64]| -> (Vec<f64>, f64) {
+            let all: Vec<f64> = errors(values).iter().zip(&scale).map(|(e, s)| e / s).collect();
+            let largest = all.iter().copied().fold(0.0, f64::max);
+            (all, largest)
+        };
+        let mut best = (relative(start).1, start.to_vec());
+        let mut values = self.least_squares(truth, start, range);
         for p in POWERS.iter().flat_map(|p| [*p; NEWTON]) {
-            let errors: Vec<f64> = self.read(&values).iter().zip(truth).map(|(r, f)| (r - f).abs()).collect();
-            let largest = errors.iter().copied().fold(0.0, f64::max);
+            let (errors, largest) = relative(&values);
+            if largest < best.0 {
+                best = (largest, values.clone());
+            }
             if largest <= 0.0 {
                 break;
             }
-            let weights: Vec<f64> = errors
-                .iter()
-                .zip(&self.area)
-                .map(|(e, a)| a * libm::pow(e / largest, p - 2.0).max(FLOOR))
-                .collect();
+            let weight =
+                |((e, s), a): ((&f64, &f64), &f64)| a / (s * s) * libm::pow(e / largest, p - 2.0).max(FLOOR);
+            let weights: Vec<f64> = errors.iter().zip(&scale).zip(&self.area).map(weight).collect();
             let next = self.weighted(&weights, truth, &values, range);
             values.iter_mut().zip(next).for_each(|(v, n)| *v += (n - *v) / (p - 1.0));
-            keep(&values);
         }
-        best.1
+        if relative(&values).1 < best.0 { values } else { best.1 }
+    }
+
+    /// For each sample the geometric mean of two of `errors`: the largest round the texels that it reads (not below
+    /// `LEAST_SCALE` of the largest), and the largest of all. None if all are 0.
+    fn scale(&self, errors: &[f64]) -> Option<Vec<f64>> {
+        let mut round = vec![0.0_f64; self.texels];
+        let read = |(_, w): &&(u32, f64)| *w > 0.0;
+        for (reads, e) in self.reads.chunks_exact(self.corners).zip(errors) {
+            for (t, _) in reads.iter().filter(read) {
+                round[*t as usize] = round[*t as usize].max(*e);
+            }
+        }
+        let largest = errors.iter().copied().fold(0.0, f64::max);
+        let one = |reads: &[(u32, f64)]| {
+            let local = reads.iter().filter(read).map(|(t, _)| round[*t as usize]).fold(0.0, f64::max);
+            (local.max(LEAST_SCALE * largest) * largest).sqrt()
+        };
+        (largest > 0.0).then(|| self.reads.chunks_exact(self.corners).map(one).collect())
     }
 
     /// Least squares with any weights, inside a range.

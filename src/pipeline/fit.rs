@@ -10,8 +10,9 @@ use crate::tables::driver::BakeError;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Intervals into which a cell is divided along each axis: the finest that stays within [`LIMIT`].
-const PER_CELL: [usize; 2] = [4, 2];
+/// Intervals into which a cell is divided along each axis, with the most points for which they are taken; the first that
+/// fits is. Small tables can have a ridge within a cell, which four intervals miss.
+const PER_CELL: [(usize, usize); 3] = [(8, 1 << 17), (4, LIMIT), (2, LIMIT)];
 /// Most points of the truth.
 const LIMIT: usize = 1 << 22;
 
@@ -41,10 +42,10 @@ pub(super) fn fit(
     cancel: &AtomicBool,
 ) -> Result<Fitted, PipelineError> {
     let grid = &table.grid;
-    let per_cell = PER_CELL.into_iter().find(|k| places_count(grid, *k) <= LIMIT);
-    let per_cell = per_cell.ok_or_else(|| PipelineError::Fit {
+    let per_cell = PER_CELL.into_iter().find(|(k, most)| places_count(grid, *k) <= *most);
+    let (per_cell, _) = per_cell.ok_or_else(|| PipelineError::Fit {
         table: planned.name.clone(),
-        points: places_count(grid, PER_CELL[1]),
+        points: places_count(grid, 2),
         limit: LIMIT,
     })?;
     let truth = |(x, area): &([f64; crate::grid::layout::MAX_AXES], f64)| {

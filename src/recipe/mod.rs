@@ -45,7 +45,7 @@
 //!   in full. Axes with a `length` keep it, the others are searched; `warps = "search"` tries other warps on those.
 //! * **Fitted texels**: `texels = "least-squares"` or `"minimax"` stores not the value at each texel but the values that read,
 //!   interpolated, with the least mean square or the least largest error; the file says so, with the errors of all three
-//!   choices. It costs 16 integrals a texel (two axes), a texel is no sample any more, and the laws are those of the integrals:
+//!   choices. It costs 16 to 64 integrals a texel (two axes), a texel is no sample any more, and the laws are those of the integrals:
 //!   fitted channels stay in their ranges, but sums of them may pass a bound by as much as they read wrong. Not with `size`.
 //!   See [`grid::fit`](crate::grid::fit).
 //! * **Laws** that a table is known to break are waived by `waive = [{ law = "energy", reason = "..." }]`; the file

@@ -3,6 +3,7 @@
 //!
 //! The room stands above `encode`, whose pictures and comparisons it puts into words.
 
+pub mod analytic;
 pub mod diff;
 pub mod difference;
 pub mod inspect;
