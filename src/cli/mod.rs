@@ -4,6 +4,7 @@ pub mod albedo;
 pub mod bake;
 pub mod describe;
 pub mod diff;
+mod engine;
 pub mod eval;
 pub mod exit;
 pub mod inspect;
@@ -29,7 +30,7 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    /// Bake the tables of a recipe, a preset or a glTF scene.
+    /// Bake the tables of a recipe, a preset, an engine or a glTF scene.
     Bake(bake::Args),
     /// Print what a baked file (or any picture of a format that is read) holds.
     Inspect(inspect::Args),
@@ -43,9 +44,9 @@ enum Verb {
     Laws(laws::Args),
     /// Draw the lobe of a model as a polar plot.
     Plot(plot::Args),
-    /// List models, functions, tables, presets, formats, laws or quantities.
+    /// List models, functions, tables, presets, engines, formats, laws or quantities.
     List(list::Args),
-    /// Describe a model, function, table, preset, law or quantity.
+    /// Describe a model, function, table, preset, engine, law or quantity.
     Describe(describe::Args),
 }
 

@@ -51,6 +51,9 @@ pub struct FileRecord {
     /// Errors of the reader's reconstruction from this file.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub reconstruction: Option<Reconstruction>,
+    /// The same for a reader that knows nothing of the `offset` of an axis, where one has it: how engines read.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub as_read: Option<Reconstruction>,
 }
 
 impl Manifest {
@@ -65,6 +68,16 @@ impl Manifest {
             recipe: plan.name.clone(),
             hash: hasher.finalize().to_hex().to_string(),
             tables,
+        }
+    }
+
+    /// Sizes and hashes of the files as they are written: one may hold several tables.
+    pub(super) fn set_sizes(&mut self, files: &[(String, Vec<u8>)]) {
+        for record in self.tables.iter_mut().flat_map(|t| &mut t.files) {
+            if let Some((_, bytes)) = files.iter().find(|(name, _)| *name == record.file) {
+                record.bytes = bytes.len() as u64;
+                record.blake3 = blake3::hash(bytes).to_hex().to_string();
+            }
         }
     }
 

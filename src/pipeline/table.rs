@@ -133,11 +133,15 @@ fn encode_output(
         options: &options,
         provenance_json: &json,
     };
-    let bytes = encoder.encode(&input).map_err(|error| PipelineError::Encode {
+    let [before, after] = &planned.around;
+    let mut bytes = before.clone().unwrap_or_default().into_bytes();
+    let numbers = encoder.encode(&input).map_err(|error| PipelineError::Encode {
         table: name,
         output: label,
         error,
     })?;
+    bytes.extend(numbers);
+    bytes.extend(after.iter().flat_map(|text| text.bytes()));
     let record = FileRecord {
         file: file.to_owned(),
         container: output.container.clone(),
@@ -145,6 +149,7 @@ fn encode_output(
         blake3: blake3::hash(&bytes).to_hex().to_string(),
         encoding,
         reconstruction,
+        as_read: probe.and_then(|p| p.measure_without_offset(&stored.values)),
     };
     Ok((record, bytes))
 }

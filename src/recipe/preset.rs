@@ -30,7 +30,6 @@ pub static PRESETS: &[Preset] = &[
         "split-sum-compact",
         "the same integrals in 32 x 32 texels, for a shader that can take a square root"
     ),
-    preset!("engines", "drop-in replacements of the tables that Bevy, Filament and three.js ship"),
     preset!(
         "energy-compensation",
         "directional and average albedo of white GGX and Beckmann, for multiple scattering"
