@@ -82,45 +82,67 @@ const LTC_1: &str =
 const LTC_2: &str = "(roughness, sqrt(1 - mu)) (63 / 64) + 0.5 / 64; F0 r + (F90 - F0) g; a at the coordinates of the horizon";
 const CORNERS: &str = "texel i at i / (n - 1), clamped";
 
+const FILAMENT: EngineFile = measured(
+    file("filament-dfg", "generated/data/dfg.inc of the build, with DFG_LUT_SIZE = 64", MIX),
+    "the table in filament.wasm of 1.53.4, Apache-2.0; the largest are of the cloth, which has a pole",
+    [3.898e2, 4.151e-2],
+    [8.041e-2, 5.416e-3],
+);
+
 /// Every engine.
 pub static ENGINES: &[Engine] = &[
     engine!(
         "bevy",
         "Bevy",
         "0.20-dev (bevyengine/bevy 4805ca79), crates/bevy_pbr",
-        &[file("bevy-dfg", "crates/bevy_pbr/src/environment_map/dfg.ktx2", SPLIT)]
+        &[measured(
+            file("bevy-dfg", "crates/bevy_pbr/src/environment_map/dfg.ktx2", SPLIT),
+            "dfg.ktx2 at 4805ca79, MIT or Apache-2.0",
+            [7.581e-2, 4.489e-4],
+            [9.343e-3, 1.318e-4]
+        )]
     ),
     engine!(
         "three",
         "three.js",
         "r187",
         &[
-            file("three-dfg", "src/renderers/shaders/DFGLUTData.js", SWAPPED),
+            measured(
+                file("three-dfg", "src/renderers/shaders/DFGLUTData.js", SWAPPED),
+                "DFGLUTData.js of 0.187.0, MIT",
+                [1.479e-1, 4.544e-3],
+                [3.840e-2, 1.809e-3]
+            ),
             file("three-ltc-matrix", "examples/jsm/lights/RectAreaLightTexturesLib.js", LTC_1),
-            file("three-ltc-magnitude", "examples/jsm/lights/RectAreaLightTexturesLib.js", LTC_2),
+            measured(
+                file("three-ltc-magnitude", "examples/jsm/lights/RectAreaLightTexturesLib.js", LTC_2),
+                "RectAreaLightTexturesLib.js of 0.187.0, MIT",
+                [9.430e-2, 9.129e-4],
+                [3.303e-2, 6.654e-4]
+            ),
         ]
     ),
-    engine!(
-        "filament",
-        "Filament",
-        "1.53.4, libs/ibl/src/CubemapIBL.cpp and tools/cmgen",
-        &[file("filament-dfg", "generated/data/dfg.inc of the build, with DFG_LUT_SIZE = 64", MIX)]
-    ),
+    engine!("filament", "Filament", "1.53.4, libs/ibl/src/CubemapIBL.cpp and tools/cmgen", &[FILAMENT]),
     engine!(
         "filament-centre",
         "Filament, rows where its shaders read them",
         "1.53.4, as filament",
-        &[file("filament-dfg", "generated/data/dfg.inc of the build, with DFG_LUT_SIZE = 64", MIX)]
+        &[FILAMENT]
     ),
     engine!(
         "babylon",
         "Babylon.js",
         "9.34, Misc/brdfTextureTools.js",
         &[
-            file(
-                "babylon-environment-brdf",
-                "scene.environmentBRDFTexture, or the base64 text of the environment BRDF in Misc/brdfTextureTools.js",
-                "(mu, roughness), expanded from RGBD; (F90 - F0) r + F0 g, sheen b"
+            measured(
+                file(
+                    "babylon-environment-brdf",
+                    "scene.environmentBRDFTexture, or the base64 text of the environment BRDF in Misc/brdfTextureTools.js",
+                    "(mu, roughness), expanded from RGBD; (F90 - F0) r + F0 g, sheen b"
+                ),
+                "environmentBRDF of 9.34.0, Apache-2.0; the largest are of the sheen, which has a pole",
+                [3.624e2, 6.514e-3],
+                [2.473e-2, 1.583e-3]
             ),
             file(
                 "babylon-openpbr-brdf",
@@ -157,23 +179,66 @@ pub static ENGINES: &[Engine] = &[
         "src/scene/area-light-luts.js",
         &[
             file("playcanvas-ltc-matrix", "the asset area-light-luts.bin", LTC_1),
-            file("playcanvas-ltc-magnitude", "the asset area-light-luts.bin", LTC_2),
+            measured(
+                file("playcanvas-ltc-magnitude", "the asset area-light-luts.bin", LTC_2),
+                "area-light-luts.json at 0aaef5e4, MIT; the numbers of ltc.js",
+                [9.430e-2, 9.129e-4],
+                [3.303e-2, 6.654e-4]
+            ),
         ]
     ),
     engine!(
         "selfshadow-ltc",
         "LTC tables of Heitz and Hill",
         "selfshadow/ltc_code 31e5e96b, fit/results",
-        &[file("ltc-1", "ltc.js", LTC_1), file("ltc-2", "ltc.js", LTC_2)]
+        &[
+            file("ltc-1", "ltc.js", LTC_1),
+            measured(
+                file("ltc-2", "ltc.js", LTC_2),
+                "fit/results/ltc.js, BSD",
+                [9.430e-2, 9.129e-4],
+                [3.303e-2, 6.654e-4]
+            )
+        ]
     ),
     engine!(
         "cycles",
         "Cycles",
         "blender/cycles 97dbe6f5, src/app/cycles_precompute.cpp",
         &[
-            file("cycles-ggx-E", "table_ggx_E in src/scene/shader.tables", CORNERS),
-            file("cycles-ggx-Eavg", "table_ggx_Eavg in src/scene/shader.tables", CORNERS),
+            measured(
+                file("cycles-ggx-E", "table_ggx_E in src/scene/shader.tables", CORNERS),
+                "shader.tables at 97dbe6f5, Apache-2.0",
+                [9.719e-2, 7.247e-4],
+                [3.330e-3, 3.074e-4]
+            ),
+            measured(
+                file("cycles-ggx-Eavg", "table_ggx_Eavg in src/scene/shader.tables", CORNERS),
+                "shader.tables at 97dbe6f5, Apache-2.0",
+                [2.942e-4, 1.572e-4],
+                [2.942e-4, 1.716e-4]
+            ),
         ]
+    ),
+    engine!(
+        "unity-hdrp",
+        "Unity, High Definition Render Pipeline",
+        "Runtime/Material/PreIntegratedFGD, of 2023",
+        &[file(
+            "hdrp-ggx-disney-diffuse",
+            "the texture _PreIntegratedFGD_GGXDisneyDiffuse, made at start-up",
+            "(sqrt(mu), roughness) (63 / 64) + 0.5 / 64; (F90 - F0) r + F0 g, diffuse b + 0.5"
+        )]
+    ),
+    engine!(
+        "materialx",
+        "MaterialX",
+        "1.39, MaterialXView with the albedo table of 128 x 128 texels",
+        &[file(
+            "materialx-albedo",
+            "the texture u_albedoTable, made at start-up",
+            "(mu, alpha); F0 r + F90 g"
+        )]
     ),
     engine!(
         "ogre",

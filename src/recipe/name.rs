@@ -51,7 +51,7 @@ fn shared(a: &Entry, file: &str, b: &Entry, theirs: &str) -> Option<String> {
     }
     let joins = |e: &Entry| {
         let mut outputs = e.outputs.iter().flatten().flatten();
-        outputs.all(|o| encode::encoder(&o.container).is_some_and(|e| e.is_bare()))
+        e.outputs.is_some() && outputs.all(|o| encode::encoder(&o.container).is_some_and(|e| e.is_bare()))
     };
     match () {
         () if file != theirs => Some("file names must differ by more than case".to_owned()),

@@ -64,7 +64,10 @@ fn names_that_cannot_be_are_refused() {
     assert!(one("before = 'x'").contains("exr has no place for `before`"));
     assert!(one("file = 1").contains("`file` is an integer"));
     let two = |a: &str, b: &str| message(&format!("{}{}", table("a", a), table("b", b)));
-    assert!(two("file = 'x.exr'", "file = 'x.exr'").contains("only containers without a header"));
+    assert!(
+        two("file = 'x.exr'\noutputs = ['exr:half']", "file = 'x.exr'\noutputs = ['exr:half']")
+            .contains("only containers without a header")
+    );
     let text = "outputs = ['text:half']\n";
     assert!(
         two(&format!("{text}file = 'x.h'"), &format!("{text}file = 'X.h'"))
