@@ -1,7 +1,7 @@
 //! `brdfbake bake`.
 
 use super::progress::{self, Format};
-use super::{Exit, Failure, output, scene};
+use super::{Exit, Failure, engine, output, scene};
 use crate::pipeline::{self, PipelineError, Settings};
 use crate::recipe::{self, LoadError, Plan};
 use std::path::PathBuf;
@@ -11,11 +11,14 @@ use std::sync::atomic::AtomicBool;
 /// Arguments of `bake`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Recipe file (TOML), or the name of a preset; the preset `default` if neither this nor --scene is given.
+    /// Recipe file (TOML), or the name of a preset; the preset `default` if nothing else is given.
     recipe: Option<String>,
     /// Bake only what the materials of this glTF file (.gltf, .glb) ask for.
     #[arg(long, value_name = "FILE", conflicts_with = "recipe")]
     scene: Option<PathBuf>,
+    /// Bake the tables that this engine loads, in its own files (`list engines`).
+    #[arg(long, value_name = "ENGINE", conflicts_with_all = ["recipe", "scene"])]
+    engine: Option<String>,
     /// Output folder.
     #[arg(short, long, value_name = "DIR", default_value = "brdfbake-out")]
     out: PathBuf,
@@ -38,12 +41,14 @@ pub struct Args {
 /// # Errors
 /// [`Failure`] with the exit code of the cause; the output folder is then as it was.
 pub fn run(args: &Args, cancel: &Arc<AtomicBool>) -> Result<Exit, Failure> {
-    let plan = match &args.scene {
-        Some(path) => match scene::plan(path, args.quiet, args.message_format)? {
-            Some(plan) => plan,
+    let engine = args.engine.as_deref().map(engine::plan).transpose()?;
+    let (engine, plan) = match (engine, &args.scene) {
+        (Some((engine, plan)), _) => (Some(engine), plan),
+        (None, Some(path)) => match scene::plan(path, args.quiet, args.message_format)? {
+            Some(plan) => (None, plan),
             None => return Ok(Exit::Done),
         },
-        None => plan(args.recipe.as_deref().unwrap_or("default"))?,
+        (None, None) => (None, plan(args.recipe.as_deref().unwrap_or("default"))?),
     };
     if args.dry_run {
         output::data(&pipeline::outputs(&plan).join("\n"));
@@ -52,7 +57,13 @@ pub fn run(args: &Args, cancel: &Arc<AtomicBool>) -> Result<Exit, Failure> {
     let reporter = progress::reporter(args.message_format, args.quiet);
     let settings = Settings { out: args.out.clone(), jobs: args.jobs.map(usize::from) };
     match pipeline::run(&plan, &settings, cancel, &*reporter) {
-        Ok(_) => Ok(Exit::Done),
+        Ok(outcome) => {
+            let talks = !args.quiet && args.message_format == Format::Human;
+            if let Some(engine) = engine.filter(|_| talks) {
+                engine::report(engine, &outcome);
+            }
+            Ok(Exit::Done)
+        }
         Err(error) => {
             if let (PipelineError::Laws(findings), Format::Json) = (&error, args.message_format) {
                 for finding in findings {

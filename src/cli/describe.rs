@@ -1,19 +1,19 @@
-//! `brdfbake describe ID`: everything that the registries know of a model, function, table, preset, law, quantity or
-//! container.
+//! `brdfbake describe ID`: everything that the registries know of a model, function, table, preset, engine, law, quantity
+//! or container.
 
-use super::{Exit, Failure, output};
+use super::{Exit, Failure, engine, output};
 use crate::encode::{self, Encoder};
 use crate::functions::{self, FunctionInfo};
 use crate::grid::Quantity;
 use crate::models::{self, Kind, ModelInfo, Param, Preset};
-use crate::recipe::PRESETS;
+use crate::recipe::{self, ENGINES, PRESETS};
 use crate::tables::{self, ModelUse, TableInfo};
 use crate::verify;
 
 /// Arguments of `describe`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Id of a model, function, table, preset, law, quantity or container.
+    /// Id of a model, function, table, preset, engine, law, quantity or container.
     id: String,
 }
 
@@ -30,6 +30,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     parts.extend(
         PRESETS.iter().find(|p| p.id == id).map(|p| format!("preset {}\n{}\n\n{}", p.id, p.doc, p.source)),
     );
+    parts.extend(recipe::engine(id).map(engine::page));
     parts.extend(verify::find(id).map(law));
     parts.extend(Quantity::find(id).map(quantity));
     parts.extend(encode::encoder(id).map(format));
@@ -38,7 +39,13 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
             let models = models::MODELS.iter().map(|m| m.id).chain(functions::all().map(|f| f.id));
             let tables = tables::TABLES.iter().map(|t| t.id);
             let formats = encode::ENCODERS.iter().map(|e| e.id());
-            let rest = PRESETS.iter().map(|p| p.id).chain(verify::LAWS.iter().map(|l| l.id)).chain(formats);
+            let engines = ENGINES.iter().map(|e| e.id);
+            let rest = PRESETS
+                .iter()
+                .map(|p| p.id)
+                .chain(engines)
+                .chain(verify::LAWS.iter().map(|l| l.id))
+                .chain(formats);
             models.chain(tables).chain(rest)
         };
         let hint = crate::math::nearest::nearest(id, ids())

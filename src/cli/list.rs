@@ -6,7 +6,7 @@ use crate::encode::option::words;
 use crate::functions;
 use crate::grid::quantity::QUANTITIES;
 use crate::models::MODELS;
-use crate::recipe::PRESETS;
+use crate::recipe::{ENGINES, PRESETS};
 use crate::tables::TABLES;
 use crate::verify::LAWS;
 
@@ -21,6 +21,8 @@ pub enum What {
     Tables,
     /// Recipes that come with the program.
     Presets,
+    /// Engines whose tables are baked in their own files.
+    Engines,
     /// Containers and what they can store.
     Formats,
     /// Laws that are checked.
@@ -65,6 +67,7 @@ fn rows(what: What) -> Vec<(String, String)> {
         What::Functions => functions::all().map(|f| row(f.id, f.title)).collect(),
         What::Tables => TABLES.iter().map(|t| row(t.id, t.title)).collect(),
         What::Presets => PRESETS.iter().map(|p| row(p.id, p.doc)).collect(),
+        What::Engines => ENGINES.iter().map(|e| row(e.id, &format!("{}: {}", e.title, e.version))).collect(),
         What::Formats => ENCODERS
             .iter()
             .map(|e| {

@@ -4,6 +4,7 @@ pub mod albedo;
 pub mod bake;
 pub mod describe;
 pub mod diff;
+mod engine;
 pub mod eval;
 pub mod exit;
 pub mod fit;
@@ -31,7 +32,7 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    /// Bake the tables of a recipe, a preset or a glTF scene.
+    /// Bake the tables of a recipe, a preset, an engine or a glTF scene.
     Bake(bake::Args),
     /// Print what a baked file (or any picture of a format that is read) holds.
     Inspect(inspect::Args),
@@ -49,9 +50,9 @@ enum Verb {
     Plot(plot::Args),
     /// Fit a formula to the split sum of a model, as shader code.
     Fit(fit::Args),
-    /// List models, functions, tables, presets, formats, laws or quantities.
+    /// List models, functions, tables, presets, engines, formats, laws or quantities.
     List(list::Args),
-    /// Describe a model, function, table, preset, law or quantity.
+    /// Describe a model, function, table, preset, engine, law or quantity.
     Describe(describe::Args),
 }
 

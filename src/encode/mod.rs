@@ -65,6 +65,7 @@ pub mod raw;
 pub mod read;
 pub mod storage;
 mod texels;
+pub mod text;
 
 pub use diff::{ImageDiff, Tolerance};
 pub use option::{FILE_OPTIONS, FileOption, Shape};
@@ -108,6 +109,10 @@ pub trait Encoder: Debug + Send + Sync {
     fn holds_metadata(&self) -> bool {
         true
     }
+    /// True if the file is nothing but numbers: text may stand round them, and tables behind each other.
+    fn is_bare(&self) -> bool {
+        false
+    }
     /// How its files begin; empty if they cannot be told apart or are not read.
     fn magic(&self) -> &'static [&'static [u8]] {
         &[]
@@ -135,6 +140,7 @@ pub static ENCODERS: &[&dyn Encoder] = &[
     &hdr::Hdr,
     &npy::Npy,
     &raw::Raw,
+    &text::Text,
     &csv::Csv,
     &merl::Merl,
     &code::Code(code::C),

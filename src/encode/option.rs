@@ -19,6 +19,8 @@ pub enum FileOption {
     Parts,
     /// `tiled`: tiles of 64 x 64 pixels instead of scan lines.
     Tiled,
+    /// `untagged`: nothing is said of the colour space.
+    Untagged,
     /// `zstd`: supercompressed with Zstandard.
     Zstd,
 }
@@ -31,6 +33,7 @@ pub static FILE_OPTIONS: &[FileOption] = &[
     FileOption::Layers,
     FileOption::Parts,
     FileOption::Tiled,
+    FileOption::Untagged,
     FileOption::Zstd,
 ];
 
@@ -45,6 +48,7 @@ impl FileOption {
             FileOption::Layers => "layers",
             FileOption::Parts => "parts",
             FileOption::Tiled => "tiled",
+            FileOption::Untagged => "untagged",
             FileOption::Zstd => "zstd",
         }
     }
@@ -59,6 +63,7 @@ impl FileOption {
             FileOption::Layers => "a third axis makes the layers of an array, not a volume",
             FileOption::Parts => "a third axis makes parts of the file, not slices below each other",
             FileOption::Tiled => "tiles of 64 x 64 pixels",
+            FileOption::Untagged => "no gamma chunk, by which browsers would convert the numbers",
             FileOption::Zstd => "supercompressed with Zstandard, level 19",
         }
     }

@@ -15,7 +15,8 @@
 //! choice: a program that multiplies by alpha (OpenImageIO does, unless `oiio:UnassociatedAlpha` is set) reads three of
 //! them wrongly, and those of RGBD. EXR has no such trap.
 //!
-//! The samples are linear data: gAMA is 1 and there is no sRGB chunk. The provenance is an uncompressed iTXt chunk with
+//! The samples are linear data: gAMA is 1 and there is no sRGB chunk. Browsers convert by gAMA as they decode a picture, also
+//! for a texture; `untagged` leaves it out. The provenance is an uncompressed iTXt chunk with
 //! the keyword `brdfbake`; it holds the ids and ranges of the channels, without which the codes mean nothing.
 //! Filter and compression level are fixed, so that one version of this program always makes the same bytes.
 
@@ -40,7 +41,7 @@ impl Encoder for Png {
     }
 
     fn options(&self) -> &'static [FileOption] {
-        &[FileOption::Rgba, FileOption::FillZero, FileOption::FillOne]
+        &[FileOption::Rgba, FileOption::FillZero, FileOption::FillOne, FileOption::Untagged]
     }
 
     fn most_channels(&self) -> usize {
@@ -84,7 +85,9 @@ impl Encoder for Png {
         encoder.set_depth(if wide { ::png::BitDepth::Sixteen } else { ::png::BitDepth::Eight });
         encoder.set_filter(::png::Filter::Paeth);
         encoder.set_deflate_compression(::png::DeflateCompression::Level(6));
-        encoder.set_source_gamma(::png::ScaledFloat::new(1.0));
+        if !input.shape().has(FileOption::Untagged) {
+            encoder.set_source_gamma(::png::ScaledFloat::new(1.0));
+        }
         encoder.add_itxt_chunk(ATTRIBUTE.to_owned(), input.provenance_json.to_owned()).map_err(library)?;
         let mut writer = encoder.write_header().map_err(library)?;
         let mut pixels = texels::pack(input, components)?;

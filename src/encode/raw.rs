@@ -15,6 +15,10 @@ impl Encoder for Raw {
         "bin"
     }
 
+    fn is_bare(&self) -> bool {
+        true
+    }
+
     fn storages(&self) -> &'static [Storage] {
         super::storage::STORAGES
     }

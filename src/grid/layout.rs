@@ -94,6 +94,14 @@ impl Grid {
         Ok(Grid { axes, order: [free, bound].concat(), coupled })
     }
 
+    /// The grid as a reader takes it that knows nothing of offsets; none if no axis has one.
+    #[must_use]
+    pub fn without_offset(&self) -> Option<Grid> {
+        let offset = self.axes.iter().any(|a| a.offset.abs() > 0.0);
+        let axes = self.axes.iter().map(|a| Axis { offset: 0.0, ..a.clone() }).collect();
+        offset.then(|| Grid { axes, ..self.clone() })
+    }
+
     /// The axes, fastest first.
     #[must_use]
     pub fn axes(&self) -> &[Axis] {

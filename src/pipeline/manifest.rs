@@ -54,6 +54,9 @@ pub struct FileRecord {
     /// What the texels of this file hold, where they are fitted.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub texels: Option<TexelRecord>,
+    /// The same for a reader that knows nothing of the `offset` of an axis, where one has it: how engines read.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub as_read: Option<Reconstruction>,
 }
 
 impl Manifest {
@@ -68,6 +71,16 @@ impl Manifest {
             recipe: plan.name.clone(),
             hash: hasher.finalize().to_hex().to_string(),
             tables,
+        }
+    }
+
+    /// Sizes and hashes of the files as they are written: one may hold several tables.
+    pub(super) fn set_sizes(&mut self, files: &[(String, Vec<u8>)]) {
+        for record in self.tables.iter_mut().flat_map(|t| &mut t.files) {
+            if let Some((_, bytes)) = files.iter().find(|(name, _)| *name == record.file) {
+                record.bytes = bytes.len() as u64;
+                record.blake3 = blake3::hash(bytes).to_hex().to_string();
+            }
         }
     }
 

@@ -171,12 +171,18 @@ pub fn run(
     if !findings.is_empty() {
         return Err(PipelineError::Laws(findings));
     }
-    let manifest = Manifest::new(plan, made.iter().map(|m| m.record.clone()).collect());
-    let mut files: Vec<(PathBuf, Vec<u8>)> = made
-        .into_iter()
-        .flat_map(|m| m.files)
-        .map(|(name, bytes)| (settings.out.join(name), bytes))
-        .collect();
+    let mut files: Vec<(String, Vec<u8>)> = Vec::new();
+    for (name, bytes) in made.iter_mut().flat_map(|m| std::mem::take(&mut m.files)) {
+        // tables that name the same file follow each other
+        match files.iter_mut().find(|(other, _)| *other == name) {
+            Some((_, before)) => before.extend(bytes),
+            None => files.push((name, bytes)),
+        }
+    }
+    let mut manifest = Manifest::new(plan, made.into_iter().map(|m| m.record).collect());
+    manifest.set_sizes(&files);
+    let mut files: Vec<(PathBuf, Vec<u8>)> =
+        files.into_iter().map(|(name, bytes)| (settings.out.join(name), bytes)).collect();
     files.push((settings.out.join(MANIFEST), manifest.to_bytes()));
     let written = atomic::write_all(&files, cancel)?;
     let outcome = Outcome { manifest, written: written.written, unchanged: written.unchanged };
@@ -187,14 +193,23 @@ pub fn run(
 /// Names of every file that a plan writes, in order, relative to the output folder.
 #[must_use]
 pub fn outputs(plan: &Plan) -> Vec<String> {
-    let mut names: Vec<String> = plan.tables.iter().flat_map(file_names).collect();
+    let mut names: Vec<String> = Vec::new();
+    for name in plan.tables.iter().flat_map(file_names) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
     names.push(MANIFEST.to_owned());
     names
 }
 
-/// File names of one table, one an output: `name.exr`, or `name.float.exr` where a container is used twice.
+/// File names of one table, one an output: `name.exr`, or `name.float.exr` where a container is used twice; or the one
+/// that the recipe gives.
 #[must_use]
 pub fn file_names(planned: &PlannedTable) -> Vec<String> {
+    if let Some(file) = &planned.file {
+        return vec![file.clone()];
+    }
     let outputs = &planned.outputs;
     outputs
         .iter()

@@ -161,11 +161,11 @@ impl Texels<'_> {
 fn encode_output(
     planned: &PlannedTable,
     output: &Output,
-    texels: &Texels<'_>,
+    source: &Texels<'_>,
     provenance: &Provenance,
     file: &str,
 ) -> Result<(FileRecord, Vec<u8>), PipelineError> {
-    let table = texels.table;
+    let table = source.table;
     let (name, label) = (planned.name.clone(), output.to_string());
     let unknown = || PipelineError::Encode {
         table: planned.name.clone(),
@@ -174,7 +174,7 @@ fn encode_output(
     };
     let encoder = encode::encoder(&output.container).ok_or_else(unknown)?;
     let storage = Storage::find(&output.storage).ok_or_else(unknown)?;
-    let Chosen { stored, reconstruction, texels } = texels
+    let Chosen { stored, reconstruction, texels } = source
         .choose(planned.texels, storage)
         .map_err(|error| PipelineError::Range { table: name.clone(), output: label.clone(), error })?;
     let options = output.file_options();
@@ -202,11 +202,15 @@ fn encode_output(
         options: &options,
         provenance_json: &json,
     };
-    let bytes = encoder.encode(&input).map_err(|error| PipelineError::Encode {
+    let [before, after] = &planned.around;
+    let mut bytes = before.clone().unwrap_or_default().into_bytes();
+    let numbers = encoder.encode(&input).map_err(|error| PipelineError::Encode {
         table: name,
         output: label,
         error,
     })?;
+    bytes.extend(numbers);
+    bytes.extend(after.iter().flat_map(|text| text.bytes()));
     let record = FileRecord {
         file: file.to_owned(),
         container: output.container.clone(),
@@ -215,6 +219,7 @@ fn encode_output(
         encoding,
         reconstruction,
         texels,
+        as_read: source.probe.and_then(|p| p.measure_without_offset(&stored.values)),
     };
     Ok((record, bytes))
 }

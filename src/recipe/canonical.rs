@@ -26,6 +26,14 @@ pub(super) fn table(table: &PlannedTable) -> Json {
     let mut put = |key: &str, value: Json| drop(map.insert(key.to_owned(), value));
     put("kind", spec.kind.id.into());
     put("name", table.name.as_str().into());
+    if let Some(file) = &table.file {
+        put("file", file.as_str().into());
+    }
+    for (key, text) in ["before", "after"].into_iter().zip(&table.around) {
+        if let Some(text) = text {
+            put(key, text.as_str().into());
+        }
+    }
     if spec.layout.is_custom() {
         put("channels", spec.layout.ids().collect::<Vec<_>>().into());
     } else {

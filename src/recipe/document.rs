@@ -3,7 +3,7 @@
 use super::fault::{Fault, Faults};
 use super::outputs::Output;
 use super::read_axis;
-use super::section::{Section, wrong};
+use super::section::{Section, unknown_word, wrong};
 use super::sizing::{self, Sizing};
 use super::{MAX_TABLES, formats};
 use crate::grid::Axis;
@@ -13,10 +13,13 @@ use crate::tables::driver::OnMiss;
 use serde_json::{Map, Value as Json};
 use toml::de::DeTable;
 
-const ROOT: &[&str] = &["name", "tolerance", "table"];
+const ROOT: &[&str] = &["name", "tolerance", "engine", "table"];
 const TABLE: &[&str] = &[
     "kind",
     "name",
+    "file",
+    "before",
+    "after",
     "layout",
     "channels",
     "model",
@@ -45,6 +48,10 @@ pub(super) struct Entry {
     /// `table[0]`.
     pub(super) path: String,
     pub(super) name: Option<String>,
+    /// Name of its one file, instead of the one made from `name`.
+    pub(super) file: Option<String>,
+    /// Text before and behind the numbers of that file.
+    pub(super) around: [Option<String>; 2],
     pub(super) kind: Option<String>,
     pub(super) layout: Option<String>,
     /// A channel that could not be read is none.
@@ -67,12 +74,17 @@ pub(super) struct Entry {
 pub(super) fn read(root: &DeTable<'_>, faults: &mut Faults) -> Document {
     let section = Section::new(root, "", "the recipe", ROOT, faults);
     section.require("name", "name = \"my-tables\"", faults);
-    section.require("table", "[[table]]", faults);
+    if section.get("engine").is_none() {
+        section.require("table", "[[table]]", faults);
+    }
     let mut document = Document {
         name: section.text("name", faults),
         tolerance: section.number("tolerance", faults),
         tables: Vec::new(),
     };
+    if let Some(id) = section.text("engine", faults) {
+        document.tables = engine(&id, faults);
+    }
     let Some(tables) = section.tables("table", "[[table]]", faults) else { return document };
     if tables.is_empty() || tables.len() > MAX_TABLES {
         let allowed = format!("1 to {MAX_TABLES}");
@@ -82,6 +94,21 @@ pub(super) fn read(root: &DeTable<'_>, faults: &mut Faults) -> Document {
         document.tables.push(entry(table, path, faults));
     }
     document
+}
+
+/// The tables of an engine; what is wrong with them is wrong with the key `engine`.
+fn engine(id: &str, faults: &mut Faults) -> Vec<Entry> {
+    let Some(found) = super::engine(id) else {
+        faults.value("engine", unknown_word("engine", id, super::ENGINES.iter().map(|e| e.id)));
+        return Vec::new();
+    };
+    let (root, _) = DeTable::parse_recoverable(found.recipe);
+    let mut inner = Faults::default();
+    let tables = read(root.get_ref(), &mut inner).tables;
+    for (_, fault) in inner.list {
+        faults.value("engine", fault);
+    }
+    tables.into_iter().map(|entry| Entry { path: "engine".to_owned(), ..entry }).collect()
 }
 
 fn entry(table: &DeTable<'_>, path: String, faults: &mut Faults) -> Entry {
@@ -97,6 +124,8 @@ fn entry(table: &DeTable<'_>, path: String, faults: &mut Faults) -> Entry {
     }
     Entry {
         name: section.text("name", faults),
+        file: section.text("file", faults),
+        around: ["before", "after"].map(|key| section.long_text(key, faults)),
         kind: section.text("kind", faults),
         layout: section.text("layout", faults),
         channels: channels(&section, faults),

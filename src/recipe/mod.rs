@@ -4,10 +4,12 @@
 //! ```toml
 //! name = "example"                 # required; a-z, 0-9 and `-`
 //! tolerance = 1e-4                 # optional; for tables that do not give their own
+//! # engine = "bevy"                # the tables that an engine loads (`list engines`); `table` may then be left out
 //!
 //! [[table]]                        # 1 to 256 of them
 //! kind = "dfg"                     # required; an id of `list tables`
 //! name = "ggx-dfg"                 # required; stem of the file names, so unique and portable
+//! # file = "dfg.ktx2"              # name of its one file, in place of `name` and an extension
 //! layout = "scale-bias"            # default: the first layout of the kind
 //! # channels = ["dfg.f82"]         # instead of a layout: any channels of the kind (`describe`), in file order
 //! model = "ggx"                    # default: the kind's; an id or other name of `list models`
@@ -51,6 +53,10 @@
 //! * **Laws** that a table is known to break are waived by `waive = [{ law = "energy", reason = "..." }]`; the file
 //!   then says that it is not verified, with the reason. A law that the kind does not check cannot be waived.
 //!
+//! * **Files of other programs**: with `file`, a table with one output writes a file of that name. In the containers without
+//!   header, `text` and `raw`, `before` and `after` stand round the numbers, and tables that name the same file follow each
+//!   other in it: `file = "lut.h"`, `before = "const float lut[] = {\n"`, `after = "};\n"`.
+//!
 //! # Faults
 //! All faults of a file are reported at once, in file order, with line, column, key, what was given, what is allowed
 //! and a remedy. A file with syntax errors is checked for nothing else: what they leave of it cannot be trusted.
@@ -80,6 +86,7 @@ mod bind;
 mod canonical;
 mod diagnostic;
 mod document;
+mod engine;
 mod fault;
 mod load;
 mod name;
@@ -92,6 +99,7 @@ mod sizing;
 mod span;
 
 pub use diagnostic::{Diagnostic, RecipeError};
+pub use engine::{ENGINES, Engine, EngineFile, Shipped, engine};
 pub use fault::Fault;
 pub use load::{LoadError, load};
 pub use outputs::Output;

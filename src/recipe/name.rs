@@ -1,6 +1,8 @@
 //! Names that become file names: the same on every system.
 
-use super::fault::{Fault, show};
+use super::document::Entry;
+use super::fault::{Fault, Faults, show};
+use crate::encode;
 
 /// Most characters of a name.
 const LONGEST: usize = 64;
@@ -8,8 +10,57 @@ const LONGEST: usize = 64;
 /// Names that Windows keeps for devices, with any extension and in any case.
 const DEVICES: &[&str] = &["con", "prn", "aux", "nul"];
 
+/// What the pipeline writes beside the tables.
+const MANIFEST: &str = "manifest.json";
+
 /// What is wrong with the name of a table, if anything: it becomes the stem of file names.
 pub(super) fn table(name: &str) -> Option<Fault> {
+    portable("table name", name)
+}
+
+/// Checks the file names that tables give themselves: portable, one output each, and no two tables in one file unless
+/// the container takes them one behind the other.
+pub(super) fn files(entries: &[Entry], faults: &mut Faults) {
+    for (i, entry) in entries.iter().enumerate() {
+        let Some(file) = &entry.file else { continue };
+        let path = format!("{}.file", entry.path);
+        let fault = portable("file name", file).or_else(|| {
+            let stem = file.rsplit_once('.').map_or(file.as_str(), |(stem, _)| stem);
+            let manifest =
+                file.eq_ignore_ascii_case(MANIFEST).then(|| "the manifest has this name".to_owned());
+            let why = manifest.or_else(|| {
+                entries.iter().enumerate().filter(|(j, _)| i != *j).find_map(|(j, other)| match &other.file {
+                    Some(theirs) if j < i => shared(entry, file, other, theirs),
+                    Some(_) => None,
+                    None => (other.name.as_deref()?.eq_ignore_ascii_case(stem))
+                        .then(|| "a table of this name writes files of its own".to_owned()),
+                })
+            });
+            why.map(|why| Fault::Twice { what: "file name", got: show(file), why })
+        });
+        if let Some(fault) = fault {
+            faults.value(path, fault);
+        }
+    }
+}
+
+/// Why two tables cannot name these files.
+fn shared(a: &Entry, file: &str, b: &Entry, theirs: &str) -> Option<String> {
+    if !file.eq_ignore_ascii_case(theirs) {
+        return None;
+    }
+    let joins = |e: &Entry| {
+        let mut outputs = e.outputs.iter().flatten().flatten();
+        e.outputs.is_some() && outputs.all(|o| encode::encoder(&o.container).is_some_and(|e| e.is_bare()))
+    };
+    match () {
+        () if file != theirs => Some("file names must differ by more than case".to_owned()),
+        () if joins(a) && joins(b) => None,
+        () => Some("only containers without a header (raw, text) hold one table behind the other".to_owned()),
+    }
+}
+
+fn portable(what: &'static str, name: &str) -> Option<Fault> {
     let bad = |c: char| !(c.is_ascii_alphanumeric() || "._-".contains(c));
     let why = match () {
         () if name.contains(bad) => "has a character that is not portable in file names",
@@ -18,7 +69,7 @@ pub(super) fn table(name: &str) -> Option<Fault> {
         () => common(name)?,
     };
     let allowed = "1 to 64 of A-Z a-z 0-9 . _ -, not starting with . or -, not ending with .";
-    Some(Fault::Name { what: "table name", got: show(name), why, allowed })
+    Some(Fault::Name { what, got: show(name), why, allowed })
 }
 
 /// What is wrong with the name of a recipe, if anything.

@@ -143,6 +143,24 @@ pub(super) fn check(entry: &Entry, bound: &Bound, stored: &[Option<&'static Stor
     check_shapes(entry, bound, faults);
 }
 
+/// A table that names its file has one output; text round the numbers needs a file that is nothing but numbers.
+pub(super) fn check_file(entry: &Entry, outputs: &[Output], faults: &mut Faults) {
+    let fault = |why: String, remedy| Fault::Container { why, remedy };
+    if entry.file.is_some() && outputs.len() > 1 {
+        let why = format!("`file` names one file, and the table has {} outputs", outputs.len());
+        faults.value(format!("{}.file", entry.path), fault(why, "leave one output, or leave `file` out"));
+    }
+    for (key, text) in ["before", "after"].into_iter().zip(&entry.around) {
+        let bare = |o: &Output| encode::encoder(&o.container).is_some_and(|e| e.is_bare());
+        if text.is_some()
+            && let Some(output) = outputs.iter().find(|o| !bare(o))
+        {
+            let why = format!("{} has no place for `{key}`", output.container);
+            faults.value(format!("{}.{key}", entry.path), fault(why, "take the container text or raw"));
+        }
+    }
+}
+
 /// A storage that spreads its steps over the range of a channel must have a step that is of use.
 fn check_storable(entry: &Entry, bound: &Bound, stored: &[Option<&'static Stored>], faults: &mut Faults) {
     for (i, stored) in stored.iter().enumerate() {

@@ -35,6 +35,10 @@ pub struct Plan {
 pub struct PlannedTable {
     /// Stem of its file names; portable, and unique in the plan without regard to case.
     pub name: String,
+    /// Name of its one file, if the recipe names it. Tables that name the same file follow each other in it.
+    pub file: Option<String>,
+    /// Text before and behind the numbers of that file.
+    pub around: [Option<String>; 2],
     /// Kind, layout, model, parameters, axes and baker.
     pub bound: Bound,
     /// Absolute tolerance of each channel, within [`TOLERANCE`].
@@ -66,6 +70,8 @@ impl PlannedTable {
     pub fn sized(&self, bound: Bound, found: SizeRecord) -> PlannedTable {
         PlannedTable {
             name: self.name.clone(),
+            file: self.file.clone(),
+            around: self.around.clone(),
             bound,
             tolerance: self.tolerance,
             on_miss: self.on_miss,
@@ -201,6 +207,8 @@ fn entry(i: usize, table: TableRequest) -> Entry {
     Entry {
         path: format!("table[{i}]"),
         name: Some(table.name),
+        file: None,
+        around: [None, None],
         kind: Some(kind),
         layout,
         channels: channels.map(|c| c.into_iter().map(Some).collect()),
@@ -223,6 +231,7 @@ pub(super) fn resolve(document: Document, faults: &mut Faults) -> Option<Plan> {
         faults.value("name", fault);
     }
     check_tolerance(document.tolerance, "tolerance".to_owned(), faults);
+    name::files(&document.tables, faults);
     let mut taken = HashSet::new();
     let tables: Vec<Option<PlannedTable>> = document
         .tables
@@ -270,6 +279,7 @@ fn table(entry: Entry, tolerance: Option<f64>, faults: &mut Faults) -> Option<Pl
     let bound = bind::bind(&entry, faults);
     let kind = entry.kind.as_deref().and_then(crate::tables::find);
     let waivers = kind.map(|kind| waivers(&entry, kind, faults));
+    outputs::check_file(&entry, &outputs, faults);
     if let Some(bound) = &bound {
         outputs::check(&entry, bound, &stored, faults);
     }
@@ -279,6 +289,8 @@ fn table(entry: Entry, tolerance: Option<f64>, faults: &mut Faults) -> Option<Pl
     let finest = stored.iter().flatten().map(|s| s.half_step).fold(f64::INFINITY, f64::min);
     let mut planned = PlannedTable {
         name: entry.name?,
+        file: entry.file,
+        around: entry.around,
         bound: bound?,
         tolerance: entry.tolerance.or(tolerance).unwrap_or(finest),
         on_miss: entry.on_miss,

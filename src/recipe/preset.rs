@@ -34,7 +34,6 @@ pub static PRESETS: &[Preset] = &[
         "split-sum-factored",
         "64 x 64 texels that read to within 4.5e-4 everywhere, for a shader that can take a power and a product"
     ),
-    preset!("engines", "drop-in replacements of the tables that Bevy, Filament and three.js ship"),
     preset!(
         "energy-compensation",
         "directional and average albedo of white GGX and Beckmann, for multiple scattering"

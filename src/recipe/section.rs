@@ -9,6 +9,9 @@ use toml::de::{DeTable, DeValue};
 /// Most characters of a text.
 pub(super) const LONGEST_TEXT: usize = 1000;
 
+/// Most bytes of the text round the numbers of a file.
+pub(super) const LONGEST_AROUND: usize = 1 << 16;
+
 /// A TOML table with the keys that it may have.
 #[derive(Debug)]
 pub(super) struct Section<'a> {
@@ -66,6 +69,21 @@ impl<'a> Section<'a> {
         let got = text.trim().chars().count();
         if got == 0 || got > LONGEST_TEXT {
             faults.value(self.path(key), Fault::TextLength { key: key.to_owned(), got, limit: LONGEST_TEXT });
+            return None;
+        }
+        Some(text.to_owned())
+    }
+
+    /// A text of any characters, up to [`LONGEST_AROUND`] bytes.
+    pub(super) fn long_text(&self, key: &'static str, faults: &mut Faults) -> Option<String> {
+        let value = self.get(key)?;
+        let Some(text) = value.as_str() else {
+            faults.value(self.path(key), wrong(key, value, "a string"));
+            return None;
+        };
+        if text.len() > LONGEST_AROUND {
+            let (got, limit) = (text.chars().count(), LONGEST_AROUND);
+            faults.value(self.path(key), Fault::TextLength { key: key.to_owned(), got, limit });
             return None;
         }
         Some(text.to_owned())

@@ -51,6 +51,12 @@ const DIFFUSE: ChannelInfo = ChannelInfo {
     range: [0.0, 785.0 / 504.0],
 };
 
+const DIFFUSE_HDRP: ChannelInfo = ChannelInfo {
+    id: "dfg.diffuse-hdrp",
+    meaning: "dfg.diffuse / 1.03571, kept in [0.5, 1.5], as Unity's HDRP stores it",
+    range: [0.5, 1.5],
+};
+
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
     id: "dfg",
@@ -92,7 +98,7 @@ pub static INFO: TableInfo = TableInfo {
             channels: &[FC, TOTAL, DIFFUSE],
         },
     ],
-    mix: Mix::Free(&[F82_X16]),
+    mix: Mix::Free(&[F82_X16, DIFFUSE_HDRP]),
     model: ModelUse::Split("ggx"),
     params: &[],
     laws: &["finite", "range", "energy", "split", "cross-check", "reciprocity"],
@@ -131,6 +137,8 @@ enum Part {
     Rest,
     /// The albedo of the cloth, or of the diffuse lobe.
     Lobe(Lobe),
+    /// The same over a divisor, kept in the range of its channel.
+    Kept(Lobe, f64, [f64; 2]),
 }
 
 /// A lobe that shares the axes of the table, but not its model.
@@ -172,7 +180,7 @@ impl Part {
             Part::Split(g, _) => vec![*g],
             Part::Loss => vec![Functional::One],
             Part::Rest => vec![Functional::Schlick, Functional::One],
-            Part::Lobe(_) => Vec::new(),
+            Part::Lobe(_) | Part::Kept(..) => Vec::new(),
         }
     }
 }
@@ -187,6 +195,7 @@ fn part(channel: &str) -> Part {
         "dfg.f82-x16" => Part::Split(Functional::F82, 16.0 / schlick::F82_SCALE),
         "dfg.cloth" => Part::Lobe(CLOTH_LOBE),
         "dfg.diffuse" => Part::Lobe(DIFFUSE_LOBE),
+        "dfg.diffuse-hdrp" => Part::Kept(DIFFUSE_LOBE, 1.03571, DIFFUSE_HDRP.range),
         _ => Part::Split(Functional::One, 1.0),
     }
 }
@@ -256,12 +265,17 @@ impl Baker for Dfg {
                     let mirror = schlick::weight(view.mu);
                     (fc - mirror * one, fc_error + mirror * one_error)
                 }
-                Part::Lobe(lobe) => {
+                Part::Lobe(lobe) | Part::Kept(lobe, ..) => {
                     let model = lobe.build(at[self.alpha])?;
                     // an isotropic lobe: the azimuth of the view does not matter
                     let e = integrate(&*model, view.in_plane(), &[Functional::One], tolerance)?;
                     all.evaluations = all.evaluations.saturating_add(e.evaluations);
-                    (e.value[0], e.error[0])
+                    match part {
+                        Part::Kept(_, divisor, [lo, hi]) => {
+                            ((e.value[0] / divisor).clamp(*lo, *hi), e.error[0] / divisor)
+                        }
+                        _ => (e.value[0], e.error[0]),
+                    }
                 }
             };
         }
@@ -281,7 +295,7 @@ impl Baker for Dfg {
     }
 
     fn rule(&self) -> String {
-        let lobes = self.parts.iter().any(|p| matches!(p, Part::Lobe(_)));
+        let lobes = self.parts.iter().any(|p| matches!(p, Part::Lobe(_) | Part::Kept(..)));
         let more = if lobes { "; cloth and diffuse each by its own rule" } else { "" };
         format!("{}{more}", self.sweep.rule())
     }

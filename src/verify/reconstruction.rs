@@ -72,8 +72,19 @@ impl<'a> Probe<'a> {
     /// Compares `stored` (quantised values of the table's grid), read by the reference reader, with the integrals.
     #[must_use]
     pub fn measure(&self, stored: &[f64]) -> Reconstruction {
+        self.measure_on(&self.bound.spec.grid, stored)
+    }
+
+    /// The same for a reader that knows nothing of the offsets of the axes; none if there are none.
+    #[must_use]
+    pub fn measure_without_offset(&self, stored: &[f64]) -> Option<Reconstruction> {
+        let grid = self.bound.spec.grid.without_offset()?;
+        Some(self.measure_on(&grid, stored))
+    }
+
+    fn measure_on(&self, reader: &Grid, stored: &[f64]) -> Reconstruction {
         let grid = &self.bound.spec.grid;
-        let regular = self.compare_all(stored, &self.points);
+        let regular = self.compare_all(reader, stored, &self.points);
         let mut worst: Vec<&Compared<'_>> = regular.iter().collect();
         // the sort is stable, so equal errors keep the order of the grid
         worst.sort_by(|a, b| b.largest.total_cmp(&a.largest));
@@ -81,7 +92,7 @@ impl<'a> Probe<'a> {
         let cells: Vec<[f64; MAX_AXES]> =
             worst.iter().take(SEARCHED).chain(practical).flat_map(|c| around(grid, &c.fresh.x)).collect();
         let fine = self.integrate(&cells);
-        let searched = self.compare_all(stored, &fine);
+        let searched = self.compare_all(reader, stored, &fine);
         let whole = self.spread(&regular, &searched, |_| true);
         Reconstruction {
             filter: filter(grid).to_owned(),
@@ -108,14 +119,14 @@ impl<'a> Probe<'a> {
         points.par_iter().filter_map(fresh).collect()
     }
 
-    fn compare_all<'f>(&self, stored: &[f64], points: &'f [Fresh]) -> Vec<Compared<'f>> {
-        points.par_iter().map(|fresh| self.compare(stored, fresh)).collect()
+    fn compare_all<'f>(&self, reader: &Grid, stored: &[f64], points: &'f [Fresh]) -> Vec<Compared<'f>> {
+        points.par_iter().map(|fresh| self.compare(reader, stored, fresh)).collect()
     }
 
-    fn compare<'f>(&self, stored: &[f64], fresh: &'f Fresh) -> Compared<'f> {
+    fn compare<'f>(&self, reader: &Grid, stored: &[f64], fresh: &'f Fresh) -> Compared<'f> {
         let channels = self.bound.spec.layout.channels.len();
         let mut read = [0.0; MAX_CHANNELS];
-        lookup::read(&self.bound.spec.grid, stored, &fresh.point, &mut read[..channels]);
+        lookup::read(reader, stored, &fresh.point, &mut read[..channels]);
         self.bound.baker.decode(fresh.point.values(), &mut read);
         let channels = self.channels().len();
         let mut result = Compared { fresh, largest: 0.0, channel: 0, sum: 0.0 };

@@ -9,8 +9,12 @@ use std::sync::atomic::AtomicBool;
 #[test]
 fn presets_are_the_files_of_the_folder() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets");
-    let files: BTreeSet<String> =
-        std::fs::read_dir(&folder).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
+    let files: BTreeSet<String> = std::fs::read_dir(&folder)
+        .unwrap()
+        .map(|f| f.unwrap())
+        .filter(|f| f.file_type().unwrap().is_file())
+        .map(|f| f.file_name().into_string().unwrap())
+        .collect();
     let listed: BTreeSet<String> = PRESETS.iter().map(|p| format!("{}.toml", p.id)).collect();
     assert_eq!(files, listed);
     for p in PRESETS {

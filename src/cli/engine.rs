@@ -1,0 +1,62 @@
+//! What `bake --engine` says of its tables, and what `describe` says of an engine.
+
+use super::{Failure, output};
+use crate::pipeline::Outcome;
+use crate::recipe::{self, ENGINES, Engine, Plan};
+
+/// The engine of this id and its plan.
+pub(super) fn plan(id: &str) -> Result<(&'static Engine, Plan), Failure> {
+    let Some(engine) = recipe::engine(id) else {
+        let ids: Vec<&str> = ENGINES.iter().map(|e| e.id).collect();
+        let hint = crate::math::nearest::nearest(id, ids.iter().copied())
+            .map_or_else(String::new, |n| format!("; did you mean `{n}`?"));
+        return Err(Failure::input(format!("no engine `{id}`; there is {}{hint}", ids.join(", "))));
+    };
+    Ok((engine, engine.plan().map_err(Failure::input)?))
+}
+
+/// One line a table: which file it replaces, and both errors as the engine reads them.
+pub(super) fn report(engine: &Engine, outcome: &Outcome) {
+    for (file, table) in engine.files.iter().zip(&outcome.manifest.tables) {
+        let Some(record) = table.files.first() else { continue };
+        let mut text = format!("  {} -> {}", record.file, file.replaces);
+        if let Some(read) = record.as_read.as_ref().or(record.reconstruction.as_ref()) {
+            let whole = [read.whole.largest.value, read.whole.mean];
+            let practical = read.practical.as_ref().map(|p| [p.largest.value, p.mean]);
+            text.push_str(&format!("\n    as the engine reads it: {}", errors(whole, practical)));
+            if let Some(shipped) = &file.shipped {
+                text.push_str(&format!(
+                    "\n    the shipped file: {}",
+                    errors(shipped.whole, Some(shipped.practical))
+                ));
+            }
+        }
+        output::talk(&text);
+    }
+}
+
+fn errors(whole: [f64; 2], practical: Option<[f64; 2]>) -> String {
+    let both = |[largest, mean]: [f64; 2]| format!("{largest:.1e} at most, {mean:.1e} in the mean");
+    let practical = practical.map_or_else(String::new, |p| format!("; practical domain {}", both(p)));
+    format!("{}{practical}", both(whole))
+}
+
+/// The page of an engine.
+pub(super) fn page(engine: &Engine) -> String {
+    let mut text = format!("engine {}\n{}: {}\n", engine.id, engine.title, engine.version);
+    for file in engine.files {
+        text.push_str(&format!(
+            "\n  {}\n    replaces: {}\n    read at: {}\n",
+            file.table, file.replaces, file.read
+        ));
+        if let Some(s) = &file.shipped {
+            text.push_str(&format!(
+                "    shipped: {}, off by {}\n",
+                s.source,
+                errors(s.whole, Some(s.practical))
+            ));
+        }
+    }
+    text.push_str(&format!("\n{}", engine.recipe));
+    text
+}

@@ -1,0 +1,280 @@
+//! The tables that engines load, by engine: `bake --engine bevy`, or `engine = "bevy"` in a recipe.
+//!
+//! An engine is a recipe, `presets/engines/NAME.toml`, and an entry here. The recipe holds all that is convention: axes and
+//! their order, texels, direction, channels, storage, container and file name. The entry says which file each table takes
+//! the place of, how the shader reads it, and how far off the shipped file is.
+//!
+//! What the shipped files are off by is measured like the tables of this program: read as the engine reads them, which is
+//! bilinearly and without knowing of an `offset`, against fresh integrals between the texels (`tests/engines.rs`).
+
+use super::{Plan, RecipeError, parse};
+
+/// An engine and the tables that it loads.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Engine {
+    /// Id: the file name without `.toml`, and the name in the file.
+    pub id: &'static str,
+    /// Name.
+    pub title: &'static str,
+    /// The version whose conventions these are, and where they are written.
+    pub version: &'static str,
+    /// The text of the recipe.
+    pub recipe: &'static str,
+    /// The files, in the order of the tables of the recipe.
+    pub files: &'static [EngineFile],
+}
+
+/// What becomes of a table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EngineFile {
+    /// Name of the table in the recipe.
+    pub table: &'static str,
+    /// What the file takes the place of.
+    pub replaces: &'static str,
+    /// How the shader reads it: texture coordinates, then what it makes of the texel.
+    pub read: &'static str,
+    /// The file that the engine ships, if it was measured.
+    pub shipped: Option<Shipped>,
+}
+
+/// How far off a shipped file is, as the engine reads it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shipped {
+    /// Which file, with its licence.
+    pub source: &'static str,
+    /// Largest and mean error over the whole domain.
+    pub whole: [f64; 2],
+    /// The same where mu >= 0.05 and roughness >= 0.09.
+    pub practical: [f64; 2],
+}
+
+macro_rules! engine {
+    ($id:literal, $title:literal, $version:literal, $files:expr) => {
+        Engine {
+            id: $id,
+            title: $title,
+            version: $version,
+            recipe: include_str!(concat!("../../presets/engines/", $id, ".toml")),
+            files: $files,
+        }
+    };
+}
+
+const fn file(table: &'static str, replaces: &'static str, read: &'static str) -> EngineFile {
+    EngineFile { table, replaces, read, shipped: None }
+}
+
+const fn measured(
+    file: EngineFile,
+    source: &'static str,
+    whole: [f64; 2],
+    practical: [f64; 2],
+) -> EngineFile {
+    EngineFile { shipped: Some(Shipped { source, whole, practical }), ..file }
+}
+
+const SPLIT: &str = "(mu, roughness); F0 r + F90 g";
+const SWAPPED: &str = "(roughness, mu); F0 r + F90 g";
+const MIX: &str = "(mu, roughness); mix(r, g, F0), 1 + F0 (1 / g - 1), cloth b";
+const FLIPPED: &str = "(mu, 1 - roughness); mix(r, g, F0)";
+const LTC_1: &str =
+    "(roughness, sqrt(1 - mu)) (63 / 64) + 0.5 / 64; M^-1 = [[r, 0, b], [0, 1, 0], [g, 0, a]]";
+const LTC_2: &str = "(roughness, sqrt(1 - mu)) (63 / 64) + 0.5 / 64; F0 r + (F90 - F0) g; a at the coordinates of the horizon";
+const CORNERS: &str = "texel i at i / (n - 1), clamped";
+
+const FILAMENT: EngineFile = measured(
+    file("filament-dfg", "generated/data/dfg.inc of the build, with DFG_LUT_SIZE = 64", MIX),
+    "the table in filament.wasm of 1.53.4, Apache-2.0; the largest are of the cloth, which has a pole",
+    [3.898e2, 4.151e-2],
+    [8.041e-2, 5.416e-3],
+);
+
+/// Every engine.
+pub static ENGINES: &[Engine] = &[
+    engine!(
+        "bevy",
+        "Bevy",
+        "0.20-dev (bevyengine/bevy 4805ca79), crates/bevy_pbr",
+        &[measured(
+            file("bevy-dfg", "crates/bevy_pbr/src/environment_map/dfg.ktx2", SPLIT),
+            "dfg.ktx2 at 4805ca79, MIT or Apache-2.0",
+            [7.581e-2, 4.489e-4],
+            [9.343e-3, 1.318e-4]
+        )]
+    ),
+    engine!(
+        "three",
+        "three.js",
+        "r187",
+        &[
+            measured(
+                file("three-dfg", "src/renderers/shaders/DFGLUTData.js", SWAPPED),
+                "DFGLUTData.js of 0.187.0, MIT",
+                [1.479e-1, 4.544e-3],
+                [3.840e-2, 1.809e-3]
+            ),
+            file("three-ltc-matrix", "examples/jsm/lights/RectAreaLightTexturesLib.js", LTC_1),
+            measured(
+                file("three-ltc-magnitude", "examples/jsm/lights/RectAreaLightTexturesLib.js", LTC_2),
+                "RectAreaLightTexturesLib.js of 0.187.0, MIT",
+                [9.430e-2, 9.129e-4],
+                [3.303e-2, 6.654e-4]
+            ),
+        ]
+    ),
+    engine!("filament", "Filament", "1.53.4, libs/ibl/src/CubemapIBL.cpp and tools/cmgen", &[FILAMENT]),
+    engine!(
+        "filament-centre",
+        "Filament, rows where its shaders read them",
+        "1.53.4, as filament",
+        &[FILAMENT]
+    ),
+    engine!(
+        "babylon",
+        "Babylon.js",
+        "9.34, Misc/brdfTextureTools.js",
+        &[
+            measured(
+                file(
+                    "babylon-environment-brdf",
+                    "scene.environmentBRDFTexture, or the base64 text of the environment BRDF in Misc/brdfTextureTools.js",
+                    "(mu, roughness), expanded from RGBD; (F90 - F0) r + F0 g, sheen b"
+                ),
+                "environmentBRDF of 9.34.0, Apache-2.0; the largest are of the sheen, which has a pole",
+                [3.624e2, 6.514e-3],
+                [2.473e-2, 1.583e-3]
+            ),
+            file(
+                "babylon-openpbr-brdf",
+                "the base64 text of the OpenPBR BRDF in Misc/brdfTextureTools.js",
+                "(mu, roughness), expanded from RGBD; (F90 - F0) r + F0 g, b / 16 of the tint at 82 degrees"
+            ),
+        ]
+    ),
+    engine!(
+        "unreal",
+        "Unreal's split sum, as published",
+        "Karis 2013, section 'Environment BRDF'; the engine's own source was not read",
+        &[file("unreal-dfg", "the pre-integrated GF texture", SPLIT)]
+    ),
+    engine!(
+        "gltf-sample-renderer",
+        "glTF Sample Renderer",
+        "source/Renderer/shaders/ibl.glsl, of 2025",
+        &[file("gltf-ggx", "assets/images/lut_ggx.png", "(mu, roughness); F0 r + g")]
+    ),
+    engine!(
+        "godot",
+        "Godot",
+        "4.x, forward_clustered/integrate_dfg.glsl",
+        &[file(
+            "godot-dfg",
+            "the table that the renderer makes at start-up",
+            "(mu, 1 - roughness); mix(r, g, F0), cloth b"
+        )]
+    ),
+    engine!(
+        "playcanvas",
+        "PlayCanvas",
+        "src/scene/area-light-luts.js",
+        &[
+            file("playcanvas-ltc-matrix", "the asset area-light-luts.bin", LTC_1),
+            measured(
+                file("playcanvas-ltc-magnitude", "the asset area-light-luts.bin", LTC_2),
+                "area-light-luts.json at 0aaef5e4, MIT; the numbers of ltc.js",
+                [9.430e-2, 9.129e-4],
+                [3.303e-2, 6.654e-4]
+            ),
+        ]
+    ),
+    engine!(
+        "selfshadow-ltc",
+        "LTC tables of Heitz and Hill",
+        "selfshadow/ltc_code 31e5e96b, fit/results",
+        &[
+            file("ltc-1", "ltc.js", LTC_1),
+            measured(
+                file("ltc-2", "ltc.js", LTC_2),
+                "fit/results/ltc.js, BSD",
+                [9.430e-2, 9.129e-4],
+                [3.303e-2, 6.654e-4]
+            )
+        ]
+    ),
+    engine!(
+        "cycles",
+        "Cycles",
+        "blender/cycles 97dbe6f5, src/app/cycles_precompute.cpp",
+        &[
+            measured(
+                file("cycles-ggx-E", "table_ggx_E in src/scene/shader.tables", CORNERS),
+                "shader.tables at 97dbe6f5, Apache-2.0",
+                [9.719e-2, 7.247e-4],
+                [3.330e-3, 3.074e-4]
+            ),
+            measured(
+                file("cycles-ggx-Eavg", "table_ggx_Eavg in src/scene/shader.tables", CORNERS),
+                "shader.tables at 97dbe6f5, Apache-2.0",
+                [2.942e-4, 1.572e-4],
+                [2.942e-4, 1.716e-4]
+            ),
+        ]
+    ),
+    engine!(
+        "unity-hdrp",
+        "Unity, High Definition Render Pipeline",
+        "Runtime/Material/PreIntegratedFGD, of 2023",
+        &[file(
+            "hdrp-ggx-disney-diffuse",
+            "the texture _PreIntegratedFGD_GGXDisneyDiffuse, made at start-up",
+            "(sqrt(mu), roughness) (63 / 64) + 0.5 / 64; (F90 - F0) r + F0 g, diffuse b + 0.5"
+        )]
+    ),
+    engine!(
+        "materialx",
+        "MaterialX",
+        "1.39, MaterialXView with the albedo table of 128 x 128 texels",
+        &[file(
+            "materialx-albedo",
+            "the texture u_albedoTable, made at start-up",
+            "(mu, alpha); F0 r + F90 g"
+        )]
+    ),
+    engine!(
+        "ogre",
+        "OGRE 1.x",
+        "14.6, Media/RTShaderLib",
+        &[
+            file("ogre-dfg", "Media/RTShaderLib/dfgLUTmultiscatter.dds", FLIPPED),
+            file("ogre-ltc-matrix", "Media/RTShaderLib/ltc_1.dds", LTC_1),
+            file("ogre-ltc-magnitude", "Media/RTShaderLib/ltc_2.dds", LTC_2),
+        ]
+    ),
+    engine!(
+        "o3de",
+        "Open 3D Engine",
+        "Atom, BRDFTexture/BRDFTextureCS.azsl",
+        &[file(
+            "o3de-dfg",
+            "the table that the pass BRDFTexture makes at start-up",
+            "(mu, 1 - roughness); F0 r + F90 g"
+        )]
+    ),
+];
+
+/// Finds an engine by its id.
+#[must_use]
+pub fn engine(id: &str) -> Option<&'static Engine> {
+    ENGINES.iter().find(|e| e.id == id)
+}
+
+impl Engine {
+    /// Resolves its recipe.
+    ///
+    /// # Errors
+    /// None for the engines in [`ENGINES`] (a test resolves them all), but where a container is left out of the build: the
+    /// recipe of Bevy wants feature `zstd`.
+    pub fn plan(&self) -> Result<Plan, RecipeError> {
+        parse(self.recipe, &format!("presets/engines/{}.toml", self.id))
+    }
+}
