@@ -71,6 +71,9 @@ fn generated_parts_are_up_to_date() {
 
 #[test]
 fn commands_in_the_readme_exist() {
+    if std::env::var_os("BLESS").is_some() {
+        return; // the other test is writing the file
+    }
     let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
     assert!(readme.contains("cargo run --release -- bake\n"), "the main command");
     for verb in ["bake", "inspect", "diff", "golden", "eval", "albedo", "laws", "plot", "list", "describe"] {
