@@ -6,7 +6,7 @@
 //!
 //! Linearised least squares, reweighted by 1 / Q of the step before (Sanathanan and Koerner) and by the error at each
 //! point (Lawson), so that the largest error falls; practical points count [`PRACTICAL_WEIGHT`] times. The best of all steps whose
-//! Q stays positive is kept. Errors are measured in f32, as the code computes, at points between those of the fit and on the edges.
+//! Q stays positive is kept. Errors are measured in f32, as the code computes, at points between those of the fit, at those and on the edges.
 
 use crate::integrate::Sums;
 use crate::tables::Bound;
@@ -133,14 +133,15 @@ pub fn fit(bound: &Bound, degree: usize, variables: Variables) -> Result<Fit, Fi
     Ok(fit)
 }
 
-/// E and rest on lines of the coupled variable and of roughness, shifted by a part of their distance.
+/// E and rest on lines of the coupled variable and of roughness, and of mu and roughness, shifted by a part of their distance: the
+/// former are dense where mu is near alpha, the latter where it is not.
 fn samples(bound: &Bound, [mu_axis, alpha_axis]: [usize; 2], offset: f64) -> Vec<Sample> {
     let lines = if offset > 0.0 { LINES - 1 } else { LINES };
     let place = |i: usize| (i as f64 + offset) / (LINES - 1) as f64;
     let one = |n: usize| {
-        let (x, roughness) = (place(n % lines), place(n / lines));
+        let (x, roughness) = (place(n % lines), place(n / lines % lines));
         let alpha = roughness * roughness;
-        let mu = if alpha > 0.0 { x * x * alpha / (1.0 + alpha - x * x) } else { x };
+        let mu = if n < lines * lines && alpha > 0.0 { x * x * alpha / (1.0 + alpha - x * x) } else { x };
         let mut at = [0.0; 2];
         (at[mu_axis], at[alpha_axis]) = (mu, alpha);
         let value: Sums = bound.baker.texel(&at, TOLERANCE).ok()?.value;
@@ -152,7 +153,7 @@ fn samples(bound: &Bound, [mu_axis, alpha_axis]: [usize; 2], offset: f64) -> Vec
             practical: mu >= PRACTICAL_MU && alpha >= PRACTICAL_ALPHA,
         })
     };
-    (0..lines * lines).into_par_iter().filter_map(one).collect()
+    (0..2 * lines * lines).into_par_iter().filter_map(one).collect()
 }
 
 fn variable(variables: Variables, mu: f64, alpha: f64) -> f64 {
