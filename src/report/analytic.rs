@@ -9,6 +9,7 @@
 //! Q stays positive is kept. Errors are measured in f32, as the code computes, at points between those of the fit, at those and on the edges.
 
 use crate::integrate::Sums;
+use crate::math::least_squares::least_squares;
 use crate::tables::Bound;
 use crate::verify::reconstruction::{PRACTICAL_ALPHA, PRACTICAL_MU};
 use rayon::prelude::*;
@@ -172,24 +173,31 @@ fn rational(samples: &[Sample], which: usize, degree: usize, variables: Variable
     let row = |(p, s): (&Vec<f64>, &Sample)| -> Vec<f64> {
         p.iter().copied().chain(p[1..].iter().map(|p| -s.value[which] * p)).collect()
     };
-    let rows: Vec<Vec<f64>> = table.iter().zip(samples).map(row).collect();
-    let right: Vec<f64> = samples.iter().map(|s| s.value[which]).collect();
+    let mut rows: Vec<Vec<f64>> = table.iter().zip(samples).map(row).collect();
+    let mut right: Vec<f64> = samples.iter().map(|s| s.value[which]).collect();
+    // a pull of the denominator towards 1, for as long as it has a zero
+    for j in n..2 * n - 1 {
+        rows.push((0..2 * n - 1).map(|k| f64::from(u8::from(k == j))).collect());
+        right.push(0.0);
+    }
+    let mut pull = 0.0_f64;
     let importance = |s: &Sample| if s.practical { PRACTICAL_WEIGHT } else { 1.0 };
     let mut weights = vec![1.0 / samples.len() as f64; samples.len()];
     let mut below = vec![1.0; samples.len()];
     let mut best: Option<(f64, Vec<f64>)> = None;
     for step in 0..STEPS {
-        let scaled: Vec<f64> = samples
+        let mut scaled: Vec<f64> = samples
             .iter()
             .zip(&weights)
             .zip(&below)
             .map(|((s, w), q)| w.sqrt() * importance(s) / q)
             .collect();
+        scaled.resize(rows.len(), pull);
         let c = least_squares(&rows, &right, &scaled)?;
         below = table.iter().map(|p| 1.0 + dot(&p[1..], &c[n..])).collect();
-        let positive = below.iter().all(|q| *q > LEAST_Q);
-        below.iter_mut().for_each(|q| *q = q.max(LEAST_Q));
-        if !positive {
+        if below.iter().any(|q| *q <= LEAST_Q) {
+            pull = (2.0 * pull).max(1e-5);
+            below.fill(1.0);
             continue;
         }
         let errors: Vec<f64> = table
@@ -232,37 +240,6 @@ fn powers(u: f64, a: f64, degree: usize) -> Vec<f64> {
         ui *= u;
     }
     out
-}
-
-/// Weighted least squares by Householder reflections; columns that vanish get the coefficient 0.
-fn least_squares(rows: &[Vec<f64>], right: &[f64], weights: &[f64]) -> Option<Vec<f64>> {
-    let n = rows.first()?.len();
-    let mut columns: Vec<Vec<f64>> =
-        (0..n).map(|j| rows.iter().zip(weights).map(|(r, w)| r[j] * w).collect()).collect();
-    let mut y: Vec<f64> = right.iter().zip(weights).map(|(f, w)| f * w).collect();
-    let size = columns.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let mut diagonal = vec![0.0; n];
-    for k in 0..n {
-        let (done, rest) = columns.split_at_mut(k + 1);
-        let v = &mut done[k];
-        let norm = v[k..].iter().map(|x| x * x).sum::<f64>().sqrt();
-        if norm <= 1e-13 * size {
-            continue;
-        }
-        diagonal[k] = if v[k] > 0.0 { -norm } else { norm };
-        v[k] -= diagonal[k];
-        let square: f64 = v[k..].iter().map(|x| x * x).sum();
-        for other in rest.iter_mut().chain(std::iter::once(&mut y)) {
-            let along = 2.0 * v[k..].iter().zip(&other[k..]).map(|(a, b)| a * b).sum::<f64>() / square;
-            other[k..].iter_mut().zip(&v[k..]).for_each(|(o, v)| *o -= along * v);
-        }
-    }
-    let mut x = vec![0.0; n];
-    for k in (0..n).rev().filter(|k| diagonal[*k].abs() > 0.0) {
-        let known: f64 = (k + 1..n).map(|j| columns[j][k] * x[j]).sum();
-        x[k] = (y[k] - known) / diagonal[k];
-    }
-    x.iter().all(|v| v.is_finite()).then_some(x)
 }
 
 impl Fit {
