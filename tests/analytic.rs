@@ -31,7 +31,7 @@ fn values_from_elsewhere_are_within_the_stated_errors() {
 fn wgsl_and_glsl_parse() {
     let fit = ggx(2, Variables::Coupled);
     naga::front::wgsl::parse_str(&fit.code(Lang::Wgsl)).unwrap();
-    let glsl = format!("#version 450\n{}\nvoid main() {{ ggx_dfg(0.5, 0.5); }}\n", fit.code(Lang::Glsl));
+    let glsl = format!("#version 450\n{}\nvoid main() {{ split_sum(0.5, 0.5); }}\n", fit.code(Lang::Glsl));
     let options = naga::front::glsl::Options::from(naga::ShaderStage::Fragment);
     naga::front::glsl::Frontend::default().parse(&options, &glsl).unwrap();
 }
@@ -41,8 +41,15 @@ fn wgsl_and_glsl_parse() {
 fn table_of_degrees() {
     for variables in [Variables::Coupled, Variables::Plain] {
         for degree in 1..=4 {
-            let fit = std::panic::catch_unwind(|| ggx(degree, variables));
-            let Ok(fit) = fit else { continue };
+            let request =
+                Request { kind: "dfg".into(), layout: Some("factored".into()), ..Request::default() };
+            let fit = match fit(&request.bind().unwrap(), degree, variables) {
+                Ok(fit) => fit,
+                Err(e) => {
+                    eprintln!("{variables:?} {degree}: {e}");
+                    continue;
+                }
+            };
             eprintln!("{variables:?} {degree}: {} operations", fit.operations());
             eprintln!("  whole {:?}\n  practical {:?}", fit.whole, fit.practical);
         }

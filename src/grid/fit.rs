@@ -202,7 +202,7 @@ impl Samples {
     }
 
     /// The values in `range` that minimise the largest of `|A v - f| / s`, as far as powers up to 64 go; from `start`. s is
-    /// [`Samples::scale`] of the errors of `start`, so that where the table
+    /// a scale of the errors of `start`, so that where the table
     /// reads well does not pay in full for where it does not. At the samples the largest error is at most that of `start`.
     #[must_use]
     pub fn minimax(&self, truth: &[f64], start: &[f64], range: [f64; 2]) -> Vec<f64> {

@@ -1,4 +1,4 @@
-//! Least squares with weights that must not be negative, for a few unknowns.
+//! Least squares for a few unknowns: with weights that must not be negative, and plain.
 
 /// The w >= 0 that minimises `w' G w - 2 b' w`, G the Gram matrix (rows), by the active set of Lawson and Hanson.
 ///
@@ -78,4 +78,42 @@ fn solve(gram: &[Vec<f64>], b: &[f64], set: &[usize]) -> Option<Vec<f64>> {
         x[i] = (x[i] - inner) / l[i][i];
     }
     Some(x)
+}
+
+/// The x that minimises `sum (w (row . x - right))^2`, by Householder reflections.
+///
+/// Range: a column that depends on those before it, to 1e-13 of the largest entry, gets the coefficient 0; none if there are
+/// no rows, fewer rows than columns, or a result that is not finite. Accuracy: relative 1e-16 times the condition of the rows.
+#[must_use]
+pub fn least_squares(rows: &[Vec<f64>], right: &[f64], weights: &[f64]) -> Option<Vec<f64>> {
+    let n = rows.first()?.len();
+    if rows.len() < n {
+        return None;
+    }
+    let mut columns: Vec<Vec<f64>> =
+        (0..n).map(|j| rows.iter().zip(weights).map(|(r, w)| r[j] * w).collect()).collect();
+    let mut y: Vec<f64> = right.iter().zip(weights).map(|(f, w)| f * w).collect();
+    let size = columns.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let mut diagonal = vec![0.0; n];
+    for k in 0..n {
+        let (done, rest) = columns.split_at_mut(k + 1);
+        let v = &mut done[k];
+        let norm = v[k..].iter().map(|x| x * x).sum::<f64>().sqrt();
+        if norm <= 1e-13 * size {
+            continue;
+        }
+        diagonal[k] = if v[k] > 0.0 { -norm } else { norm };
+        v[k] -= diagonal[k];
+        let square: f64 = v[k..].iter().map(|x| x * x).sum();
+        for other in rest.iter_mut().chain(std::iter::once(&mut y)) {
+            let along = 2.0 * v[k..].iter().zip(&other[k..]).map(|(a, b)| a * b).sum::<f64>() / square;
+            other[k..].iter_mut().zip(&v[k..]).for_each(|(o, v)| *o -= along * v);
+        }
+    }
+    let mut x = vec![0.0; n];
+    for k in (0..n).rev().filter(|k| diagonal[*k].abs() > 0.0) {
+        let known: f64 = (k + 1..n).map(|j| columns[j][k] * x[j]).sum();
+        x[k] = (y[k] - known) / diagonal[k];
+    }
+    x.iter().all(|v| v.is_finite()).then_some(x)
 }

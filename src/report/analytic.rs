@@ -5,10 +5,11 @@
 //! `u = sqrt(mu (1 + a) / (mu + a))` is the coupled variable, in which the corner mu, alpha -> 0 is smooth, or plainly `u = mu`.
 //!
 //! Linearised least squares, reweighted by 1 / Q of the step before (Sanathanan and Koerner) and by the error at each
-//! point (Lawson), so that the largest error falls; practical points count [`PRACTICAL_WEIGHT`] times. The best of all steps whose
-//! Q stays positive is kept. Errors are measured in f32, as the code computes, at points between those of the fit and on the edges.
+//! point (Lawson), so that the largest error falls; practical points count three times. The best of all steps whose
+//! Q stays positive is kept. Errors are measured in f32, as the code computes, at points between those of the fit, at those and on the edges.
 
 use crate::integrate::Sums;
+use crate::math::least_squares::least_squares;
 use crate::tables::Bound;
 use crate::verify::reconstruction::{PRACTICAL_ALPHA, PRACTICAL_MU};
 use rayon::prelude::*;
@@ -65,6 +66,8 @@ pub struct Off {
 /// A fit, with the numbers that the code holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
+    /// Id of the model whose split sum it is.
+    pub model: &'static str,
     /// Degree in each variable.
     pub degree: usize,
     /// The variable beside alpha.
@@ -121,6 +124,7 @@ pub fn fit(bound: &Bound, degree: usize, variables: Variables) -> Result<Fit, Fi
     let nodes = truth(0.0);
     let part = |i: usize| rational(&nodes, i, degree, variables).ok_or(FitError::Pole { degree });
     let mut fit = Fit {
+        model: bound.spec.model.as_ref().map_or("", |(info, _)| info.id),
         degree,
         variables,
         coefficients: [part(0)?, part(1)?],
@@ -133,14 +137,15 @@ pub fn fit(bound: &Bound, degree: usize, variables: Variables) -> Result<Fit, Fi
     Ok(fit)
 }
 
-/// E and rest on lines of the coupled variable and of roughness, shifted by a part of their distance.
+/// E and rest on lines of the coupled variable and of roughness, and of mu and roughness, shifted by a part of their distance: the
+/// former are dense where mu is near alpha, the latter where it is not.
 fn samples(bound: &Bound, [mu_axis, alpha_axis]: [usize; 2], offset: f64) -> Vec<Sample> {
     let lines = if offset > 0.0 { LINES - 1 } else { LINES };
     let place = |i: usize| (i as f64 + offset) / (LINES - 1) as f64;
     let one = |n: usize| {
-        let (x, roughness) = (place(n % lines), place(n / lines));
+        let (x, roughness) = (place(n % lines), place(n / lines % lines));
         let alpha = roughness * roughness;
-        let mu = if alpha > 0.0 { x * x * alpha / (1.0 + alpha - x * x) } else { x };
+        let mu = if n < lines * lines && alpha > 0.0 { x * x * alpha / (1.0 + alpha - x * x) } else { x };
         let mut at = [0.0; 2];
         (at[mu_axis], at[alpha_axis]) = (mu, alpha);
         let value: Sums = bound.baker.texel(&at, TOLERANCE).ok()?.value;
@@ -152,7 +157,7 @@ fn samples(bound: &Bound, [mu_axis, alpha_axis]: [usize; 2], offset: f64) -> Vec
             practical: mu >= PRACTICAL_MU && alpha >= PRACTICAL_ALPHA,
         })
     };
-    (0..lines * lines).into_par_iter().filter_map(one).collect()
+    (0..2 * lines * lines).into_par_iter().filter_map(one).collect()
 }
 
 fn variable(variables: Variables, mu: f64, alpha: f64) -> f64 {
@@ -171,24 +176,31 @@ fn rational(samples: &[Sample], which: usize, degree: usize, variables: Variable
     let row = |(p, s): (&Vec<f64>, &Sample)| -> Vec<f64> {
         p.iter().copied().chain(p[1..].iter().map(|p| -s.value[which] * p)).collect()
     };
-    let rows: Vec<Vec<f64>> = table.iter().zip(samples).map(row).collect();
-    let right: Vec<f64> = samples.iter().map(|s| s.value[which]).collect();
+    let mut rows: Vec<Vec<f64>> = table.iter().zip(samples).map(row).collect();
+    let mut right: Vec<f64> = samples.iter().map(|s| s.value[which]).collect();
+    // a pull of the denominator towards 1, for as long as it has a zero
+    for j in n..2 * n - 1 {
+        rows.push((0..2 * n - 1).map(|k| f64::from(u8::from(k == j))).collect());
+        right.push(0.0);
+    }
+    let mut pull = 0.0_f64;
     let importance = |s: &Sample| if s.practical { PRACTICAL_WEIGHT } else { 1.0 };
     let mut weights = vec![1.0 / samples.len() as f64; samples.len()];
     let mut below = vec![1.0; samples.len()];
     let mut best: Option<(f64, Vec<f64>)> = None;
     for step in 0..STEPS {
-        let scaled: Vec<f64> = samples
+        let mut scaled: Vec<f64> = samples
             .iter()
             .zip(&weights)
             .zip(&below)
             .map(|((s, w), q)| w.sqrt() * importance(s) / q)
             .collect();
+        scaled.resize(rows.len(), pull);
         let c = least_squares(&rows, &right, &scaled)?;
         below = table.iter().map(|p| 1.0 + dot(&p[1..], &c[n..])).collect();
-        let positive = below.iter().all(|q| *q > LEAST_Q);
-        below.iter_mut().for_each(|q| *q = q.max(LEAST_Q));
-        if !positive {
+        if below.iter().any(|q| *q <= LEAST_Q) {
+            pull = (2.0 * pull).max(1e-5);
+            below.fill(1.0);
             continue;
         }
         let errors: Vec<f64> = table
@@ -231,37 +243,6 @@ fn powers(u: f64, a: f64, degree: usize) -> Vec<f64> {
         ui *= u;
     }
     out
-}
-
-/// Weighted least squares by Householder reflections; columns that vanish get the coefficient 0.
-fn least_squares(rows: &[Vec<f64>], right: &[f64], weights: &[f64]) -> Option<Vec<f64>> {
-    let n = rows.first()?.len();
-    let mut columns: Vec<Vec<f64>> =
-        (0..n).map(|j| rows.iter().zip(weights).map(|(r, w)| r[j] * w).collect()).collect();
-    let mut y: Vec<f64> = right.iter().zip(weights).map(|(f, w)| f * w).collect();
-    let size = columns.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let mut diagonal = vec![0.0; n];
-    for k in 0..n {
-        let (done, rest) = columns.split_at_mut(k + 1);
-        let v = &mut done[k];
-        let norm = v[k..].iter().map(|x| x * x).sum::<f64>().sqrt();
-        if norm <= 1e-13 * size {
-            continue;
-        }
-        diagonal[k] = if v[k] > 0.0 { -norm } else { norm };
-        v[k] -= diagonal[k];
-        let square: f64 = v[k..].iter().map(|x| x * x).sum();
-        for other in rest.iter_mut().chain(std::iter::once(&mut y)) {
-            let along = 2.0 * v[k..].iter().zip(&other[k..]).map(|(a, b)| a * b).sum::<f64>() / square;
-            other[k..].iter_mut().zip(&v[k..]).for_each(|(o, v)| *o -= along * v);
-        }
-    }
-    let mut x = vec![0.0; n];
-    for k in (0..n).rev().filter(|k| diagonal[*k].abs() > 0.0) {
-        let known: f64 = (k + 1..n).map(|j| columns[j][k] * x[j]).sum();
-        x[k] = (y[k] - known) / diagonal[k];
-    }
-    x.iter().all(|v| v.is_finite()).then_some(x)
 }
 
 impl Fit {
@@ -316,7 +297,7 @@ impl Fit {
         off
     }
 
-    /// A function `ggx_dfg(mu, alpha)` that returns scale, bias and E.
+    /// A function `split_sum(mu, alpha)` that returns scale, bias and E.
     #[must_use]
     pub fn code(&self, lang: Lang) -> String {
         let (float, suffix, bind, clamp, max, sqrt) = match lang {
@@ -345,13 +326,13 @@ impl Fit {
         let _ = writeln!(body, "    {bind} k = {one} - mu;");
         let _ = writeln!(body, "    {bind} bias = {clamp}(e * (k * k * k * k * k) + r_p / r_q, {zero}, e);");
         let open = match lang {
-            Lang::Glsl => "vec3 ggx_dfg(float mu, float alpha) {\n".to_owned(),
-            Lang::Hlsl => "float3 ggx_dfg(float mu, float alpha) {\n".to_owned(),
-            Lang::Wgsl => "fn ggx_dfg(mu: f32, alpha: f32) -> vec3<f32> {\n".to_owned(),
-            Lang::Rust => format!("pub fn ggx_dfg(mu: {float}, alpha: {float}) -> [{float}; 3] {{\n"),
+            Lang::Glsl => "vec3 split_sum(float mu, float alpha) {\n".to_owned(),
+            Lang::Hlsl => "float3 split_sum(float mu, float alpha) {\n".to_owned(),
+            Lang::Wgsl => "fn split_sum(mu: f32, alpha: f32) -> vec3<f32> {\n".to_owned(),
+            Lang::Rust => format!("pub fn split_sum(mu: {float}, alpha: {float}) -> [{float}; 3] {{\n"),
             Lang::C => "#include <math.h>\n\nstatic float brdf_clamp(float x, float lo, float hi) {\n    \
                         return x < lo ? lo : (x > hi ? hi : x);\n}\n\n\
-                        static void ggx_dfg(float mu, float alpha, float out[3]) {\n"
+                        static void split_sum(float mu, float alpha, float out[3]) {\n"
                 .to_owned(),
         };
         let close = match lang {
@@ -373,8 +354,9 @@ impl Fit {
             )
         };
         format!(
-            "// Split sum of GGX: scale, bias, E = scale + bias, each in [0, 1]; mu = n.v, alpha = roughness^2, both in [0, 1].\n\
+            "// Split sum of {}: scale, bias, E = scale + bias, each in [0, 1]; mu = n.v, alpha = roughness^2, both in [0, 1].\n\
              // Rational, degree {}; {} operations. Errors in f32, against integrals:\n{}{}",
+            self.model,
             self.degree,
             self.operations(),
             line("whole domain", &self.whole),
