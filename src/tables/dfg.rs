@@ -210,11 +210,11 @@ impl Lobe {
 }
 
 impl Dfg {
-    /// Is the white albedo above 1 by more than its own estimate?
-    fn above_one(&self, split: &Estimate) -> bool {
+    /// By how much the white albedo is above 1 beyond its own estimate; 0 if it is not.
+    fn above_one(&self, split: &Estimate) -> f64 {
         let of = |g| self.functionals.iter().position(|f| *f == g).map(|i| split.value[i] - split.error[i]);
         let sum = of(Functional::SchlickComplement).zip(of(Functional::Schlick)).map(|(a, b)| a + b);
-        of(Functional::One).or(sum).is_some_and(|least| least > 1.0)
+        of(Functional::One).or(sum).map_or(0.0, |least| (least - 1.0).max(0.0))
     }
 
     /// Loss and rest, in this order and alone.
@@ -234,14 +234,17 @@ impl Baker for Dfg {
             let share = if twice { 0.5 * tolerance } else { tolerance };
             let model = self.sweep.model(at)?;
             split = integrate(&*model, view, &self.functionals, share)?;
-            for closer in [0.1, 0.01, 0.001] {
-                if !(self.sweep.info().laws.passive && self.above_one(&split)) {
-                    break;
-                }
+            let passive = self.sweep.info().laws.passive;
+            if passive && self.above_one(&split) > 0.0 {
                 // no white albedo is above 1: this estimate is one of the few that are too small
-                let again = integrate(&*model, view, &self.functionals, closer * share)?;
+                let again = integrate(&*model, view, &self.functionals, 0.1 * share)?;
                 split =
                     Estimate { evaluations: split.evaluations.saturating_add(again.evaluations), ..again };
+            }
+            let excess = self.above_one(&split);
+            if passive && excess > 0.0 && excess <= share {
+                // it is off by this at least: the truth is 1 at most
+                split.error.iter_mut().for_each(|e| *e += excess);
             }
             all.evaluations = split.evaluations;
         }
