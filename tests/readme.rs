@@ -3,7 +3,7 @@
 
 use brdfbake::cli::exit;
 use brdfbake::models::MODELS;
-use brdfbake::recipe::PRESETS;
+use brdfbake::recipe::{ENGINES, PRESETS};
 use brdfbake::tables::{ModelUse, TABLES};
 use brdfbake::verify::LAWS;
 
@@ -41,8 +41,28 @@ fn sections() -> Vec<(&'static str, String)> {
         LAWS.iter().map(|l| format!("| `{}` | BB{:04} | {} |", l.id, l.code, l.statement)),
     );
     let presets = rows("| preset | for |", PRESETS.iter().map(|p| format!("| `{}` | {} |", p.id, p.doc)));
+    let engines = rows(
+        "| engine | version | file | takes the place of |",
+        ENGINES.iter().flat_map(|e| {
+            let plan = e.plan().unwrap();
+            let files: Vec<String> = plan.tables.iter().flat_map(brdfbake::pipeline::file_names).collect();
+            let row = move |(i, file): (usize, String)| {
+                let (id, version) = (format!("`{}`", e.id), e.version.to_owned());
+                let [id, version] = if i == 0 { [id, version] } else { [String::new(), String::new()] };
+                format!("| {id} | {version} | `{file}` | {} |", e.files[i].replaces)
+            };
+            files.into_iter().enumerate().map(row).collect::<Vec<_>>()
+        }),
+    );
     let codes = format!("```text\n{}\n```", exit::TABLE);
-    vec![("models", models), ("tables", tables), ("laws", laws), ("presets", presets), ("exit codes", codes)]
+    vec![
+        ("models", models),
+        ("tables", tables),
+        ("laws", laws),
+        ("presets", presets),
+        ("engines", engines),
+        ("exit codes", codes),
+    ]
 }
 
 #[test]

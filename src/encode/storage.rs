@@ -355,7 +355,14 @@ pub struct RangeFault {
     pub fault: QuantiseError,
 }
 
-/// Rounds every value of a table to its stored form.
+/// The end of the range for a value beyond it by no more than its own integration error: as good an estimate, and better.
+fn within_its_error(v: f64, [lo, hi]: [f64; 2], error: f64) -> f64 {
+    let kept = v.clamp(lo.min(hi), hi.max(lo));
+    if (v - kept).abs() <= error { kept } else { v }
+}
+
+/// Rounds every value of a table to its stored form. In a storage that encodes a range, a value beyond it by no more than
+/// its own integration error counts as the end of the range; one further out is an error, as everywhere.
 ///
 /// # Errors
 /// [`RangeFault`] for the first value (in file order) that `storage` cannot hold.
@@ -364,6 +371,11 @@ pub fn quantise_table(table: &Table, storage: Storage) -> Result<Quantised, Rang
     let mut values = table.values.clone();
     let (mut largest, mut worst) = (0.0, 0);
     for (t, texel) in values.chunks_exact_mut(n.max(1)).enumerate() {
+        if storage.is_bounded() {
+            for (c, v) in texel.iter_mut().enumerate() {
+                *v = within_its_error(*v, table.channels[c].range, table.errors[t * n + c]);
+            }
+        }
         storage.quantise_texel(texel, |c| table.channels[c].range).map_err(|(c, fault)| RangeFault {
             texel: t,
             channel: table.channels[c].id.clone(),

@@ -160,8 +160,8 @@ pub static ENGINES: &[Engine] = &[
     engine!(
         "gltf-sample-renderer",
         "glTF Sample Renderer",
-        "source/Renderer/shaders/ibl.glsl, of 2025",
-        &[file("gltf-ggx", "assets/images/lut_ggx.png", "(mu, roughness); F0 r + g")]
+        "source/Renderer/shaders/ibl.glsl",
+        &[file("gltf-ggx", "the picture lut_ggx.png", "(mu, roughness); F0 r + g")]
     ),
     engine!(
         "godot",
@@ -223,7 +223,7 @@ pub static ENGINES: &[Engine] = &[
     engine!(
         "unity-hdrp",
         "Unity, High Definition Render Pipeline",
-        "Runtime/Material/PreIntegratedFGD, of 2023",
+        "Runtime/Material/PreIntegratedFGD",
         &[file(
             "hdrp-ggx-disney-diffuse",
             "the texture _PreIntegratedFGD_GGXDisneyDiffuse, made at start-up",
@@ -233,7 +233,7 @@ pub static ENGINES: &[Engine] = &[
     engine!(
         "materialx",
         "MaterialX",
-        "1.39, MaterialXView with the albedo table of 128 x 128 texels",
+        "MaterialXView, ALBEDO_TABLE_SIZE = 128",
         &[file(
             "materialx-albedo",
             "the texture u_albedoTable, made at start-up",
