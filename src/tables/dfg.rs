@@ -210,11 +210,11 @@ impl Lobe {
 }
 
 impl Dfg {
-    /// Is the white albedo above 1 by more than its own estimate?
-    fn above_one(&self, split: &Estimate) -> bool {
+    /// By how much the white albedo is above 1 beyond its own estimate; 0 if it is not.
+    fn above_one(&self, split: &Estimate) -> f64 {
         let of = |g| self.functionals.iter().position(|f| *f == g).map(|i| split.value[i] - split.error[i]);
         let sum = of(Functional::SchlickComplement).zip(of(Functional::Schlick)).map(|(a, b)| a + b);
-        of(Functional::One).or(sum).is_some_and(|least| least > 1.0)
+        of(Functional::One).or(sum).map_or(0.0, |least| (least - 1.0).max(0.0))
     }
 
     /// Loss and rest, in this order and alone.
@@ -235,14 +235,20 @@ impl Baker for Dfg {
             let model = self.sweep.model(at)?;
             split = integrate(&*model, view, &self.functionals, share)?;
             // no white albedo is above 1: such an estimate is one of the few that are too small
+            let passive = self.sweep.info().laws.passive;
             for _ in 0..3 {
-                if !(self.sweep.info().laws.passive && self.above_one(&split)) {
+                if !passive || self.above_one(&split) <= 0.0 {
                     break;
                 }
                 let finer = 0.1 * split.largest_error().min(share);
                 let again = integrate(&*model, view, &self.functionals, finer)?;
                 split =
                     Estimate { evaluations: split.evaluations.saturating_add(again.evaluations), ..again };
+            }
+            if passive {
+                // what is still above is off by that at least
+                let excess = self.above_one(&split).min(share);
+                split.error.iter_mut().for_each(|e| *e += excess);
             }
             all.evaluations = split.evaluations;
         }
