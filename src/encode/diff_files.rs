@@ -101,6 +101,13 @@ pub enum DiffError {
 }
 
 impl FileDiff {
+    /// Two files that are different byte strings, and no more is known of them.
+    #[must_use]
+    pub fn of_bytes(a: &[u8], b: &[u8]) -> FileDiff {
+        let same = a.iter().zip(b).take_while(|(x, y)| x == y).count();
+        FileDiff::Bytes { offset: same, sizes: [a.len(), b.len()] }
+    }
+
     /// True if nothing that counts differs.
     #[must_use]
     pub fn equal(&self) -> bool {
@@ -203,9 +210,7 @@ fn compare(paths: [&Path; 2], bytes: [&[u8]; 2], tolerance: Tolerance) -> Result
         };
         return Ok(FileDiff::Json { difference: diff_json::first_difference(&value(0)?, &value(1)?) });
     }
-    let sizes = [bytes[0].len(), bytes[1].len()];
-    let same = bytes[0].iter().zip(bytes[1]).take_while(|(x, y)| x == y).count();
-    Ok(FileDiff::Bytes { offset: same, sizes })
+    Ok(FileDiff::of_bytes(bytes[0], bytes[1]))
 }
 
 /// Relative paths of all files below a folder.

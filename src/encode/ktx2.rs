@@ -48,16 +48,7 @@ impl Encoder for Ktx2 {
     }
 
     fn storages(&self) -> &'static [Storage] {
-        &[
-            Storage::Half,
-            Storage::Float,
-            Storage::Unorm8,
-            Storage::Unorm16,
-            Storage::Rgb10a2,
-            Storage::R11g11b10,
-            Storage::Rgb9e5,
-            Storage::Rgbd,
-        ]
+        texels::ON_GPUS
     }
 
     fn options(&self) -> &'static [FileOption] {

@@ -5,6 +5,18 @@ use super::read::{Claim, Plane, Sample};
 use super::{EncodeError, EncodeInput, Storage};
 use half::f16;
 
+/// Storages that graphics processors read, in the order of lists.
+pub(super) static ON_GPUS: &[Storage] = &[
+    Storage::Half,
+    Storage::Float,
+    Storage::Unorm8,
+    Storage::Unorm16,
+    Storage::Rgb10a2,
+    Storage::R11g11b10,
+    Storage::Rgb9e5,
+    Storage::Rgbd,
+];
+
 /// Bytes of a texel.
 pub(super) const fn size(storage: Storage, components: usize) -> usize {
     match storage {

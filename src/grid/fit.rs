@@ -15,7 +15,7 @@
 //! Both stay inside the range of the channel: texels that leave it are held at its end, and the others solved again.
 //! Sums run in fixed order on one thread: the result does not depend on the number of threads.
 
-use super::layout::{Grid, MAX_AXES, Point};
+use super::layout::{Grid, MAX_AXES, Point, combination};
 use super::{Texel, axis::count, lookup};
 
 /// What the texels of a table hold.
@@ -90,14 +90,10 @@ pub fn places(grid: &Grid, per_cell: usize) -> Vec<([f64; MAX_AXES], f64)> {
         .collect();
     let total: usize = lines.iter().map(Vec::len).product();
     (0..total)
-        .map(|mut n| {
-            let (mut x, mut area) = ([0.0; MAX_AXES], 1.0);
-            for (x, line) in x.iter_mut().zip(&lines) {
-                let (place, weight) = line[n % line.len()];
-                (*x, area) = (place, area * weight);
-                n /= line.len();
-            }
-            (x, area)
+        .map(|n| {
+            let chosen = combination(&lines, n);
+            let area = chosen[..lines.len()].iter().map(|(_, weight)| weight).product();
+            (chosen.map(|(place, _)| place), area)
         })
         .collect()
 }

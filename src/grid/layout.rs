@@ -5,6 +5,19 @@ use super::axis::{Axis, AxisError, count};
 /// Most axes a table can have.
 pub const MAX_AXES: usize = 4;
 
+/// Entry n of the product of lists, one an axis, the first fastest; axes without a list hold the default.
+///
+/// Every list has an entry.
+#[must_use]
+pub fn combination<T: Copy + Default>(lists: &[Vec<T>], mut n: usize) -> [T; MAX_AXES] {
+    let mut chosen = [T::default(); MAX_AXES];
+    for (chosen, list) in chosen.iter_mut().zip(lists) {
+        *chosen = list[n % list.len()];
+        n /= list.len();
+    }
+    chosen
+}
+
 /// Axes of a table, fastest first: axis 0 is the texture's x, axis 1 its y, axis 2 its z.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {

@@ -48,6 +48,16 @@ impl Row {
         if square > 0.0 && product < self.sin * self.s { libm::atan2(square.sqrt(), -product) } else { PI }
     }
 
+    /// The facet normal at an azimuth; `tilt` is the sine of its angle from the macronormal at `psi = 0`, so that slopes
+    /// of normals near the macronormal are not differences.
+    #[must_use]
+    pub fn normal(&self, tilt: f64, psi: f64) -> DVec3 {
+        let half = libm::sin(0.5 * psi);
+        let x = tilt + 2.0 * self.sin * self.mu * half * half;
+        let z = self.c * self.mu + self.sin * self.s * (1.0 - 2.0 * half * half);
+        DVec3::new(x, self.sin * libm::sin(psi), z)
+    }
+
     /// The azimuth at which `wm.z` has a value; 0 and pi if it is out of reach.
     #[must_use]
     pub fn azimuth_of_height(&self, z: f64) -> f64 {
@@ -112,11 +122,7 @@ fn azimuths(
     // c s - sin mu, the sine of the angle between wm and the macronormal at psi = 0
     let tilt = if sum > 0.0 { to_view * (c + mu) / sum } else { 0.0 };
     double_exponential(level, |t, _, weight| {
-        let psi = from + (to - from) * t;
-        let (half, sin_psi) = (libm::sin(0.5 * psi), libm::sin(psi));
-        let x = tilt + 2.0 * sin * mu * half * half;
-        let z = c * mu + sin * s * (1.0 - 2.0 * half * half);
-        let wm = DVec3::new(x, sin * sin_psi, z);
+        let wm = row.normal(tilt, from + (to - from) * t);
         visit(&Facet { wm, cos: c, weight: 2.0 * (to - from) * weight * width });
     });
 }

@@ -12,6 +12,7 @@
 //! sine of a panel's coordinate removes. So plain Gauss-Legendre converges geometrically everywhere.
 
 use super::microfacet::Fresnel;
+use crate::integrate::facet::Row;
 use crate::integrate::ladder::ROUNDING;
 use crate::integrate::{Estimate, MAX_CHANNELS, gauss};
 use glam::DVec3;
@@ -28,18 +29,6 @@ pub(super) struct Grooves<'a> {
     pub reach: f64,
     /// Fresnel factor.
     pub fresnel: Fresnel,
-}
-
-/// The view and one line of constant delta.
-#[derive(Clone, Copy)]
-struct Line {
-    mu: f64,
-    s: f64,
-    /// Cosine and sine of delta.
-    c: f64,
-    sin: f64,
-    /// `sin(theta - delta)`.
-    tilt: f64,
 }
 
 impl Grooves<'_> {
@@ -73,9 +62,8 @@ impl Grooves<'_> {
                 let weight = 2.0 * half * PI * sin_x * cos_x * w;
                 let (sin_u, cos_u) = libm::sincos(u);
                 let (c, sin) = (mu * cos_u - s * sin_u, s * cos_u + mu * sin_u);
-                let line = Line { mu, s, c, sin, tilt: -sin_u };
                 if c > 0.0 && sin > 0.0 {
-                    let inner = self.azimuths(&line, rule, count);
+                    let inner = self.azimuths(&Row { c, sin, mu, s }, -sin_u, rule, count);
                     total += weight * sin * c * self.fresnel.at(c) * inner;
                 }
             }
@@ -83,12 +71,12 @@ impl Grooves<'_> {
         total
     }
 
-    /// `int D min(...) dpsi` over both signs of psi.
-    fn azimuths(&self, line: &Line, rule: &gauss::Rule, count: &mut u32) -> f64 {
-        let Line { mu, c, .. } = *line;
+    /// `int D min(...) dpsi` over both signs of psi; `tilt` is `sin(theta - delta)`.
+    fn azimuths(&self, row: &Row, tilt: f64, rule: &gauss::Rule, count: &mut u32) -> f64 {
+        let Row { mu, c, .. } = *row;
         let least = libm::cos(self.reach).max(0.0).max(0.5 * mu / c);
         let mut ends = [0.5 * c / mu, (mu + (mu * mu + 4.0 * c * c).sqrt()) / (4.0 * c), mu / c, least]
-            .map(|z| line.azimuth(z.max(least)));
+            .map(|z| row.azimuth_of_height(z.max(least)));
         ends.sort_by(f64::total_cmp);
         let (mut from, mut sum) = (0.0, 0.0);
         for to in ends {
@@ -96,7 +84,7 @@ impl Grooves<'_> {
                 if to - from <= 0.0 {
                     break;
                 }
-                let wm = line.normal(from + (to - from) * x);
+                let wm = row.normal(tilt, from + (to - from) * x);
                 let mu_i = 2.0 * c * wm.z - mu;
                 let open = mu.recip().min(2.0 * wm.z / c).min(2.0 * wm.z * mu_i / (c * mu));
                 *count = count.saturating_add(1);
@@ -105,28 +93,6 @@ impl Grooves<'_> {
             from = from.max(to);
         }
         2.0 * sum
-    }
-}
-
-impl Line {
-    /// The azimuth at which a facet has the height z; 0 or pi if none has.
-    fn azimuth(&self, z: f64) -> f64 {
-        let (scale, cosine) = (self.sin * self.s, z - self.c * self.mu);
-        if cosine >= scale {
-            0.0
-        } else if cosine <= -scale {
-            PI
-        } else {
-            libm::atan2(((scale - cosine) * (scale + cosine)).sqrt(), cosine)
-        }
-    }
-
-    /// The normal at an azimuth; its slopes are not differences.
-    fn normal(&self, psi: f64) -> DVec3 {
-        let half = libm::sin(0.5 * psi);
-        let x = self.tilt + 2.0 * self.sin * self.mu * half * half;
-        let z = self.c * self.mu + self.sin * self.s * (1.0 - 2.0 * half * half);
-        DVec3::new(x, self.sin * libm::sin(psi), z)
     }
 }
 

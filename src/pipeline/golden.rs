@@ -136,8 +136,7 @@ impl Golden {
         if let (Ok(p), Ok(q)) = (read::read_bytes(&x), read::read_bytes(&y)) {
             return Ok(FileDiff::Image(self.images(&p, &q)));
         }
-        let offset = x.iter().zip(&y).position(|(a, b)| a != b).unwrap_or(x.len().min(y.len()));
-        Ok(FileDiff::Bytes { offset, sizes: [x.len(), y.len()] })
+        Ok(FileDiff::of_bytes(&x, &y))
     }
 
     fn images(&self, a: &Image, b: &Image) -> ImageDiff {

@@ -9,7 +9,7 @@
 
 use super::PipelineError;
 use crate::encode::{self, Storage};
-use crate::grid::layout::{MAX_AXES, Point};
+use crate::grid::layout::{Point, combination};
 use crate::grid::provenance::SizeRecord;
 use crate::grid::{Axis, Grid, Table, Texel, Warp, lookup};
 use crate::integrate::{MAX_CHANNELS, Sums};
@@ -184,14 +184,7 @@ impl<'a> Search<'a> {
         let total: usize = lines.iter().map(Vec::len).product();
         let errors: Vec<f64> = (0..total)
             .into_par_iter()
-            .map(|mut n| {
-                let mut x = [0.0; MAX_AXES];
-                for (x, line) in x.iter_mut().zip(&lines) {
-                    *x = line[n % line.len()];
-                    n /= line.len();
-                }
-                self.error_at(&grid, &stored, &grid.at_coordinates(&x))
-            })
+            .map(|n| self.error_at(&grid, &stored, &grid.at_coordinates(&combination(&lines, n))))
             .collect();
         Ok(errors.into_iter().fold(0.0, f64::max))
     }

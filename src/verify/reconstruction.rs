@@ -6,7 +6,7 @@
 //! grid of 5 x 5 points each, so that a corner does not slip through between two middles.
 
 use crate::grid::axis::count;
-use crate::grid::layout::{MAX_AXES, Point};
+use crate::grid::layout::{MAX_AXES, Point, combination};
 use crate::grid::provenance::{Reconstruction, Spread};
 use crate::grid::table::{Extreme, named};
 use crate::grid::{Grid, Texel, lookup};
@@ -55,15 +55,8 @@ impl<'a> Probe<'a> {
         let between: Vec<Vec<f64>> = (0..grid.axes().len()).map(|i| grid.between(i)).collect();
         let total: usize = between.iter().map(Vec::len).product();
         let step = total.div_ceil(limit.max(1));
-        let coordinates = |mut n: usize| {
-            let mut x = [0.0; MAX_AXES];
-            for (x, list) in x.iter_mut().zip(&between) {
-                *x = list[n % list.len()];
-                n /= list.len();
-            }
-            x
-        };
-        let chosen: Vec<[f64; MAX_AXES]> = (0..total).step_by(step).map(coordinates).collect();
+        let chosen: Vec<[f64; MAX_AXES]> =
+            (0..total).step_by(step).map(|n| combination(&between, n)).collect();
         let mut probe = Probe { bound, tolerance, points: Vec::new() };
         probe.points = probe.integrate(&chosen);
         probe
