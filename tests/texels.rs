@@ -143,6 +143,103 @@ fn minimax_is_never_worse_than_exact_as_stored() {
     }
 }
 
+/// Auto holds, channel by channel, what is better than the exact values by every measure; judged here by a denser scan than the
+/// program's, with a reader of our own.
+#[test]
+fn auto_is_better_by_every_measure_or_exact() {
+    for (texel, len) in [("endpoint", 32), ("center", 16), ("center", 32)] {
+        let dirs = ["exact", "auto"].map(|texels| {
+            let dir = tempfile::tempdir().unwrap();
+            let file = bake(&recipe(texels, len, texel, ""), dir.path(), 2);
+            (dir, file)
+        });
+        let record = dirs[1].1.texels.clone().unwrap();
+        assert_eq!(record.asked, "auto");
+        let figures = dirs.each_ref().map(|(dir, _)| scan(&dir.path().join("t.exr"), texel == "center"));
+        let mut improved = 0;
+        for c in 0..2 {
+            for (i, (e, f)) in figures[0][c].iter().zip(&figures[1][c]).enumerate() {
+                // the scan has other points than the choice
+                assert!(
+                    *f <= 1.03 * e,
+                    "{texel} {len}, channel {c}, measure {i}: exact {e}, auto {f} ({record:?})"
+                );
+            }
+            improved += usize::from(figures[1][c][3] < 0.8 * figures[0][c][3]);
+        }
+        assert!(improved > 0, "{texel} {len}: {figures:?}");
+        assert!(record.held != "exact", "{record:?}");
+    }
+}
+
+/// Largest and mean error over the whole domain, then over the practical one, of scale and bias, at points of no fit.
+fn scan(path: &Path, center: bool) -> [[f64; 4]; 2] {
+    let image = read::read_file(path).unwrap();
+    let (width, height) = (image.width, image.height);
+    let bound = recipe("exact", 8, "center", "").tables.remove(0).bound;
+    let mut out = [[0.0_f64; 4]; 2];
+    let mut counts = [0.0_f64; 2];
+    let points: Vec<f64> = (0..173).map(|i| (f64::from(i) + 0.5) / 173.0).collect();
+    for &mu in &points {
+        for &r in &points {
+            let truth = bound.baker.texel(&[mu, r * r], 1e-6).unwrap().value;
+            let place = |t: f64, n: usize| {
+                let last = (n - 1) as f64;
+                let free = if center { t * n as f64 - 0.5 } else { t * last };
+                let x = free.clamp(0.0, last);
+                let i = (x.floor() as usize).min(n - 2);
+                (i, x - i as f64)
+            };
+            let ((x, s), (y, t)) = (place(mu, width), place(r, height));
+            let practical = mu >= 0.05 && r >= 0.09;
+            counts[0] += 1.0;
+            counts[1] += f64::from(u8::from(practical));
+            for (c, id) in ["dfg.scale", "dfg.bias"].iter().enumerate() {
+                let v = &image.channels.iter().find(|ch| ch.name == *id).unwrap().values;
+                let row = |y: usize| v[y * width + x] * (1.0 - s) + v[y * width + x + 1] * s;
+                let error = (row(y) * (1.0 - t) + row(y + 1) * t - truth[c]).abs();
+                out[c][0] = out[c][0].max(error);
+                out[c][1] += error;
+                if practical {
+                    out[c][2] = out[c][2].max(error);
+                    out[c][3] += error;
+                }
+            }
+        }
+    }
+    for f in &mut out {
+        f[1] /= counts[0];
+        f[3] /= counts[1];
+    }
+    out
+}
+
+/// The search takes fitted texels, and then needs no more of them than exact ones.
+#[test]
+fn a_size_is_found_for_fitted_texels() {
+    let plan = |texels: &str| {
+        let source = format!(
+            "name = 'x'\n[[table]]\nkind = 'dfg'\nname = 't'\ntexels = '{texels}'\n\
+             size = {{ error = 4e-3, domain = 'practical', longest = 64 }}\n\
+             [[table.axis]]\nid = 'mu'\n[[table.axis]]\nid = 'roughness'\n"
+        );
+        parse(&source, "x.toml").unwrap_or_else(|e| panic!("{e}"))
+    };
+    let texels = ["exact", "minimax"].map(|texels| {
+        let dir = tempfile::tempdir().unwrap();
+        let settings = Settings { out: dir.path().to_path_buf(), jobs: Some(2) };
+        let outcome = run(&plan(texels), &settings, &AtomicBool::new(false), &Silent).unwrap();
+        let table = &outcome.manifest.tables[0];
+        let practical = table.files[0].reconstruction.clone().unwrap().practical.unwrap();
+        assert!(practical.largest.value <= 4e-3, "{texels}: {}", practical.largest.value);
+        // and so says a scan that is not the program's
+        let scanned = scan(&dir.path().join("t.exr"), false);
+        assert!(scanned.iter().all(|f| f[2] <= 4.2e-3), "{texels}: {scanned:?}");
+        table.size.iter().product::<usize>()
+    });
+    assert!(texels[1] < texels[0], "{texels:?}");
+}
+
 #[test]
 fn a_layout_that_the_shader_decodes_gains_too() {
     let record = fitted("least-squares", 16, "endpoint", "layout = 'factored'");

@@ -59,6 +59,47 @@ impl Objective {
     }
 }
 
+/// What a recipe asks of its texels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Texels {
+    /// This, for every channel.
+    Held(Objective),
+    /// For each channel what reads best, if it reads better than the exact values by every measure: largest and mean error, over
+    /// the whole and over the practical domain. Else the exact values.
+    Better,
+}
+
+impl Default for Texels {
+    fn default() -> Texels {
+        Texels::Held(Objective::Exact)
+    }
+}
+
+impl Texels {
+    /// All of them, in the order of messages.
+    pub const ALL: [Texels; 4] = [
+        Texels::Held(Objective::Exact),
+        Texels::Held(Objective::LeastSquares),
+        Texels::Held(Objective::Minimax),
+        Texels::Better,
+    ];
+
+    /// Id in recipes and metadata.
+    #[must_use]
+    pub const fn id(self) -> &'static str {
+        match self {
+            Texels::Held(objective) => objective.id(),
+            Texels::Better => "auto",
+        }
+    }
+
+    /// True if no fit is needed.
+    #[must_use]
+    pub const fn are_exact(self) -> bool {
+        matches!(self, Texels::Held(Objective::Exact))
+    }
+}
+
 /// Most steps of a linear solution; the matrix is close to diagonal and needs about 30.
 const STEPS: usize = 200;
 /// Residual, relative to the right side, at which a solution is done.
@@ -144,6 +185,12 @@ impl Samples {
     #[must_use]
     pub fn len(&self) -> usize {
         self.area.len()
+    }
+
+    /// The part of the domain that each point stands for.
+    #[must_use]
+    pub fn areas(&self) -> &[f64] {
+        &self.area
     }
 
     /// Are there none?

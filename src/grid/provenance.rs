@@ -174,10 +174,13 @@ pub struct Reconstruction {
 /// What fitted texels hold, and what that gains.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TexelRecord {
-    /// What the recipe asks for: `least-squares` or `minimax`.
+    /// What the recipe asks for: `least-squares`, `minimax` or `auto`.
     pub asked: String,
-    /// What this file holds: that, or `exact` where fitting gained nothing.
+    /// What this file holds: that, or `exact` where fitting gained nothing; `by-channel` if that differs.
     pub held: String,
+    /// What each channel holds, if that differs.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub by_channel: Vec<ChannelTexels>,
     /// What it means for who uses the numbers.
     pub meaning: String,
     /// Points of the truth that they were fitted to, weighted by their area in axis coordinates.
@@ -187,6 +190,15 @@ pub struct TexelRecord {
     /// Errors of reading for each choice, as stored; none if the recipe does not measure them.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub choices: Vec<ChoiceRecord>,
+}
+
+/// What one channel holds.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ChannelTexels {
+    /// Channel id.
+    pub channel: String,
+    /// `exact`, `least-squares` or `minimax`.
+    pub held: String,
 }
 
 /// Errors of reading for one choice of texels.

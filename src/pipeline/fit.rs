@@ -4,9 +4,11 @@ use super::PipelineError;
 use crate::grid::Table;
 use crate::grid::fit::{Objective, Samples, places, places_count};
 use crate::grid::layout::Point;
-use crate::integrate::Sums;
+use crate::integrate::{MAX_CHANNELS, Sums};
 use crate::recipe::PlannedTable;
+use crate::tables::Bound;
 use crate::tables::driver::BakeError;
+use crate::verify::reconstruction::in_practical_domain;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -16,12 +18,22 @@ const PER_CELL: [(usize, usize); 3] = [(8, 1 << 17), (4, LIMIT), (2, LIMIT)];
 /// Most points of the truth.
 const LIMIT: usize = 1 << 22;
 
-/// The values of a table for every objective.
+/// The values of a table for every objective, and the truth that they were fitted to.
 pub(super) struct Fitted {
-    /// Points of the truth.
-    pub(super) samples: u64,
+    samples: Samples,
+    truth: Vec<(Point, Sums)>,
     least_squares: Vec<f64>,
     minimax: Vec<f64>,
+}
+
+/// How a channel reads over a part of the domain.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Figures {
+    pub(super) largest: f64,
+    /// Number of the point of the largest.
+    pub(super) at: usize,
+    /// By area in axis coordinates.
+    pub(super) mean: f64,
 }
 
 impl Fitted {
@@ -33,12 +45,57 @@ impl Fitted {
             Objective::Minimax => &self.minimax,
         }
     }
+
+    /// Number of points of the truth.
+    pub(super) fn points(&self) -> u64 {
+        self.samples.len() as u64
+    }
+
+    /// A point of the truth.
+    pub(super) fn point(&self, i: usize) -> &Point {
+        &self.truth[i].0
+    }
+
+    /// How stored values read at these points: for each channel as measured, over the whole and the practical domain.
+    pub(super) fn figures(&self, bound: &Bound, stored: &[f64]) -> Vec<[Figures; 2]> {
+        let grid = &bound.spec.grid;
+        let n = bound.spec.layout.channels.len();
+        let reads: Vec<Vec<f64>> = (0..n)
+            .map(|c| self.samples.read(&stored.iter().skip(c).step_by(n).copied().collect::<Vec<f64>>()))
+            .collect();
+        let measured = bound.baker.decoded().map_or(n, <[_]>::len);
+        let mut figures = vec![[Figures::default(); 2]; measured];
+        let mut areas = [0.0; 2];
+        for (i, ((point, value), area)) in self.truth.iter().zip(self.samples.areas()).enumerate() {
+            let (mut read, mut value) = ([0.0; MAX_CHANNELS], *value);
+            read.iter_mut().zip(&reads).for_each(|(r, channel)| *r = channel[i]);
+            bound.baker.decode(point.values(), &mut read);
+            bound.baker.decode(point.values(), &mut value);
+            let parts = [true, in_practical_domain(grid, point)];
+            for part in (0..2).filter(|p| parts[*p]) {
+                areas[part] += area;
+                for (c, f) in figures.iter_mut().enumerate() {
+                    let (f, error) = (&mut f[part], (read[c] - value[c]).abs());
+                    f.mean += area * error;
+                    if error > f.largest {
+                        (f.largest, f.at) = (error, i);
+                    }
+                }
+            }
+        }
+        for f in &mut figures {
+            f.iter_mut().zip(areas).filter(|(_, area)| *area > 0.0).for_each(|(f, area)| f.mean /= area);
+        }
+        figures
+    }
 }
 
-/// Fits every channel by itself. A point where the integral fails is left out; the laws report those.
+/// Fits every channel of a table by itself; `bound` is what bakes it. A point where the integral fails is left out; the laws report those.
 pub(super) fn fit(
     planned: &PlannedTable,
+    bound: &Bound,
     table: &Table,
+    tolerance: f64,
     cancel: &AtomicBool,
 ) -> Result<Fitted, PipelineError> {
     let grid = &table.grid;
@@ -53,7 +110,7 @@ pub(super) fn fit(
             return None;
         }
         let point = grid.at_coordinates(x);
-        let value = planned.bound.baker.texel(point.values(), planned.tolerance).ok()?.value;
+        let value = bound.baker.texel(point.values(), tolerance).ok()?.value;
         Some((point, *area, value))
     };
     let truth: Vec<(Point, f64, Sums)> = places(grid, per_cell).par_iter().filter_map(truth).collect();
@@ -72,11 +129,9 @@ pub(super) fn fit(
     let interleave = |channels: &[Vec<f64>]| -> Vec<f64> {
         (0..grid.len()).flat_map(|t| channels.iter().map(move |values| values[t])).collect()
     };
-    Ok(Fitted {
-        samples: samples.len() as u64,
-        least_squares: interleave(&least_squares),
-        minimax: interleave(&minimax),
-    })
+    let (least_squares, minimax) = (interleave(&least_squares), interleave(&minimax));
+    let truth = truth.into_iter().map(|(point, _, value)| (point, value)).collect();
+    Ok(Fitted { samples, truth, least_squares, minimax })
 }
 
 /// The range of the channel, with the values that are outside by their own error.

@@ -8,6 +8,7 @@ pub mod golden;
 mod manifest;
 mod size;
 mod table;
+mod texels;
 
 pub use event::{Event, Extremum, Progress, Silent};
 pub use manifest::{FileRecord, MANIFEST, Manifest, TableRecord};

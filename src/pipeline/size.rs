@@ -3,12 +3,14 @@
 //! The error of multilinear reading is nearly the sum of what each axis alone leaves. So the error of each axis is
 //! measured on its own first, at rising lengths, with the other axes on [`ROWS`] lines where reading is exact. Combinations
 //! of lengths are then tried in full, from the fewest texels on, until one holds: baked, rounded as the outputs round it,
-//! and compared with fresh integrals between its texels, worst cells searched more finely ([`Probe`]).
+//! and compared with fresh integrals between its texels, worst cells searched more finely ([`Probe`]). Where the recipe has its
+//! texels fitted, each trial is fitted too.
 //!
 //! Other warps, where the recipe allows them, are ranked by two lengths of each axis; the best few are searched in full.
 
-use super::PipelineError;
-use crate::encode::{self, Storage};
+use super::texels::Source;
+use super::{PipelineError, fit};
+use crate::encode::Storage;
 use crate::grid::layout::{Point, combination};
 use crate::grid::provenance::SizeRecord;
 use crate::grid::{Axis, Grid, Table, Texel, Warp, lookup};
@@ -34,6 +36,9 @@ const FINALISTS: usize = 3;
 
 /// Full trials of one set of warps.
 const TRIALS: usize = 40;
+
+/// How many times smaller than that of exact texels the largest error of fitted ones can be: twice where a parabola bends.
+const FITTED: f64 = 2.0;
 
 /// Most points of a trial that are compared with fresh integrals.
 const COMPARED: usize = 1 << 14;
@@ -154,6 +159,12 @@ impl<'a> Search<'a> {
         texel.map_or([f64::NAN; MAX_CHANNELS], |e| e.value)
     }
 
+    /// The error of exact texels from which what is asked for may still be reached.
+    fn hope(&self) -> f64 {
+        let fitted = if self.planned.texels.are_exact() { 1.0 } else { FITTED };
+        fitted * self.sizing.error
+    }
+
     /// What axis `i` alone leaves at a length: the other axes on lines where reading is exact.
     fn axis_error(&self, set: &[Axis], i: usize, len: usize) -> Result<f64, PipelineError> {
         self.cancelled()?;
@@ -219,12 +230,18 @@ impl<'a> Search<'a> {
             evaluations: vec![0; values.len() / n.max(1)],
             values,
         };
+        let texels = self.planned.texels;
+        let fitted = match texels.are_exact() {
+            true => None,
+            false => Some(fit::fit(self.planned, &bound, &table, self.tolerance, self.cancel)?),
+        };
         let probe = Probe::new(&bound, self.tolerance, COMPARED);
+        let source = Source { bound: &bound, table: &table, fitted: fitted.as_ref(), probe: Some(&probe) };
         let mut worst = 0.0_f64;
         for storage in &self.storages {
             // what cannot be stored is reported by the bake itself
-            let Ok(stored) = encode::quantise_table(&table, *storage) else { continue };
-            let measured = probe.measure(&stored.values);
+            let Ok(chosen) = source.choose(texels, *storage) else { continue };
+            let Some(measured) = chosen.reconstruction else { continue };
             let spread = if self.sizing.practical { measured.practical.as_ref() } else { None };
             worst = worst.max(spread.unwrap_or(&measured.whole).largest.value);
         }
@@ -245,7 +262,7 @@ impl<'a> Search<'a> {
             let mut list = Vec::new();
             for len in LENGTHS.into_iter().filter(|l| *l <= self.sizing.longest) {
                 let error = self.axis_error(set, i, len)?;
-                if error <= self.sizing.error {
+                if error <= self.hope() {
                     list.push((len, error));
                 }
                 if error <= 0.2 * self.sizing.error {
@@ -254,7 +271,7 @@ impl<'a> Search<'a> {
             }
             choices.push(list);
         }
-        for lens in combinations(&choices, self.sizing.error).into_iter().take(TRIALS) {
+        for lens in combinations(&choices, self.hope()).into_iter().take(TRIALS) {
             if lens.iter().product::<usize>() >= limit {
                 break;
             }

@@ -1,16 +1,13 @@
 //! One table: bake, verify, round, compare between texels, encode in memory.
 
 use super::event::{ChoiceEntry, ReconstructionEntry};
-use super::fit::{self, Fitted};
+use super::fit;
 use super::manifest::tool;
+use super::texels::{Chosen, Source};
 use super::{Event, Extremum, FileRecord, PipelineError, Progress, TableRecord, size};
-use crate::encode::{self, EncodeInput, Quantised, RangeFault, Shape, Storage};
-use crate::grid::fit::Objective;
-use crate::grid::provenance::{
-    AxisRecord, ChoiceRecord, Encoding, Integration, RecipeId, Reconstruction, SCHEMA, SizeRecord, Subject,
-    TexelRecord,
-};
-use crate::grid::{Provenance, Table};
+use crate::encode::{self, EncodeInput, Shape, Storage};
+use crate::grid::Provenance;
+use crate::grid::provenance::{AxisRecord, Encoding, Integration, RecipeId, SCHEMA, SizeRecord, Subject};
 use crate::models::source_lines;
 use crate::recipe::{Output, Plan, PlannedTable};
 use crate::tables::driver::{self, Options};
@@ -70,16 +67,19 @@ pub(super) fn make(
     };
     let names = super::file_names(planned);
     // the laws are those of the integrals; what is fitted to them is judged by how it reads
-    let fitted = match planned.texels {
-        Objective::Exact => None,
-        _ => Some(fit::fit(planned, verified.table(), cancel)?),
+    let fitted = match planned.texels.are_exact() {
+        true => None,
+        false => Some(fit::fit(planned, &planned.bound, verified.table(), planned.tolerance, cancel)?),
     };
     let probe = planned.reconstruction.then(|| Probe::new(&planned.bound, planned.tolerance, COMPARED));
     for (output, file) in planned.outputs.iter().zip(names) {
-        let (record, bytes) = {
-            let texels = Texels { table: verified.table(), fitted: fitted.as_ref(), probe: probe.as_ref() };
-            encode_output(planned, output, &texels, &provenance, &file)?
+        let source = Source {
+            bound: &planned.bound,
+            table: verified.table(),
+            fitted: fitted.as_ref(),
+            probe: probe.as_ref(),
         };
+        let (record, bytes) = encode_output(planned, output, &source, &provenance, &file)?;
         made.record.files.push(record);
         made.files.push((file, bytes));
     }
@@ -100,68 +100,10 @@ fn size_found<'a>(found: &'a PlannedTable, record: &'a SizeRecord, index: usize,
     }
 }
 
-/// The integrals of a table, what was fitted to them, and what measures how either reads.
-struct Texels<'a> {
-    table: &'a Table,
-    fitted: Option<&'a Fitted>,
-    probe: Option<&'a Probe<'a>>,
-}
-
-/// The numbers of a file.
-struct Chosen {
-    stored: Quantised,
-    reconstruction: Option<Reconstruction>,
-    texels: Option<TexelRecord>,
-}
-
-impl Texels<'_> {
-    /// Rounds and measures what is asked for, and all choices where texels are fitted. Minimax that reads no better than
-    /// the integrals, as stored, gives way to them.
-    fn choose(&self, asked: Objective, storage: Storage) -> Result<Chosen, RangeFault> {
-        let Some(fitted) = self.fitted else {
-            let stored = encode::quantise_table(self.table, storage)?;
-            let reconstruction = self.probe.map(|p| p.measure(&stored.values));
-            return Ok(Chosen { stored, reconstruction, texels: None });
-        };
-        let mut all = Vec::new();
-        for objective in Objective::ALL {
-            let values = fitted.values(objective, &self.table.values).to_vec();
-            let stored = encode::quantise_table(&Table { values, ..self.table.clone() }, storage)?;
-            let measured = self.probe.map(|p| p.measure(&stored.values));
-            all.push((objective, stored, measured));
-        }
-        let largest = |i: usize| all[i].2.as_ref().map(|r| r.whole.largest.value);
-        let no_better = largest(0).zip(largest(2)).is_some_and(|(exact, minimax)| minimax >= exact);
-        let held = if asked == Objective::Minimax && no_better { Objective::Exact } else { asked };
-        let choices = all
-            .iter()
-            .filter_map(|(o, _, measured)| Some((o, measured.as_ref()?)))
-            .map(|(o, r)| ChoiceRecord {
-                texels: o.id().to_owned(),
-                whole: r.whole.clone(),
-                practical: r.practical.clone(),
-            })
-            .collect();
-        let values = fitted.values(held, &self.table.values);
-        let change = values.iter().zip(&self.table.values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        let texels = Some(TexelRecord {
-            asked: asked.id().to_owned(),
-            held: held.id().to_owned(),
-            meaning: held.meaning().to_owned(),
-            samples: fitted.samples,
-            largest_change: change,
-            choices,
-        });
-        let index = Objective::ALL.iter().position(|o| *o == held).unwrap_or(0);
-        let (_, stored, reconstruction) = all.swap_remove(index);
-        Ok(Chosen { stored, reconstruction, texels })
-    }
-}
-
 fn encode_output(
     planned: &PlannedTable,
     output: &Output,
-    source: &Texels<'_>,
+    source: &Source<'_>,
     provenance: &Provenance,
     file: &str,
 ) -> Result<(FileRecord, Vec<u8>), PipelineError> {

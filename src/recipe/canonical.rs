@@ -2,7 +2,6 @@
 //! "none" is left out. Numbers are written in the shortest form that reads back to the same bits.
 
 use super::plan::PlannedTable;
-use crate::grid::fit::Objective;
 use crate::grid::{Axis, Direction, Texel, Warp};
 use crate::models::Kind;
 use crate::tables::driver::OnMiss;
@@ -52,7 +51,7 @@ pub(super) fn table(table: &PlannedTable) -> Json {
     if let Some(size) = &table.size {
         put("size", size.canonical());
     }
-    if table.texels != Objective::Exact {
+    if !table.texels.are_exact() {
         put("texels", table.texels.id().into());
     }
     let waivers = table.waivers.iter().map(|w| json!({ "law": w.law, "reason": w.reason }));

@@ -7,7 +7,7 @@ use super::section::{Section, unknown_word, wrong};
 use super::sizing::{self, Sizing};
 use super::{MAX_TABLES, formats};
 use crate::grid::Axis;
-use crate::grid::fit::Objective;
+use crate::grid::fit::Texels;
 use crate::grid::provenance::Waiver;
 use crate::tables::driver::OnMiss;
 use serde_json::{Map, Value as Json};
@@ -64,7 +64,7 @@ pub(super) struct Entry {
     pub(super) reconstruction: bool,
     /// Axes without a length are searched.
     pub(super) size: Option<Sizing>,
-    pub(super) texels: Objective,
+    pub(super) texels: Texels,
     pub(super) waivers: Vec<Option<Waiver>>,
     /// None: the kind's own. An axis that could not be read is none.
     pub(super) axes: Option<Vec<Option<Axis>>>,
@@ -118,10 +118,7 @@ fn entry(table: &DeTable<'_>, path: String, faults: &mut Faults) -> Entry {
     let on_miss = section.word("on-miss", &[("fail", OnMiss::Fail), ("report", OnMiss::Report)], faults);
     let mut size = sizing::read(&section, faults);
     let axes = axes(&section, size.as_mut(), faults);
-    let texels = section.word("texels", &Objective::ALL.map(|o| (o.id(), o)), faults).unwrap_or_default();
-    if size.is_some() && texels != Objective::Exact {
-        faults.value(section.path("texels"), Fault::FittedSize);
-    }
+    let texels = section.word("texels", &Texels::ALL.map(|t| (t.id(), t)), faults).unwrap_or_default();
     Entry {
         name: section.text("name", faults),
         file: section.text("file", faults),

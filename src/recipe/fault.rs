@@ -93,9 +93,6 @@ pub enum Fault {
     /// A size to be found for a table whose axes all have a length.
     #[error("`size` has nothing to find: every axis has a `length`")]
     NothingToSize,
-    /// Fitted texels for a table whose size is to be found.
-    #[error("`size` and fitted `texels` exclude each other: the search measures tables of exact values")]
-    FittedSize,
     /// A text that is empty or too long.
     #[error("`{key}` {}", if *got == 0 { "is empty".to_owned() } else { format!("has {got} characters") })]
     TextLength {
@@ -245,9 +242,6 @@ impl Fault {
             Fault::MissingKey { example, .. } => return Some(format!("add `{example}`")),
             Fault::Type { remedy, .. } => (*remedy)?,
             Fault::NotUtf8 => "save it as UTF-8",
-            Fault::FittedSize => {
-                "leave out one of them: bake with `size` first, then give the lengths that it found"
-            }
             Fault::NothingToSize => "leave out the `length` of the axes to be searched, or leave out `size`",
             Fault::WarpForm { .. } => {
                 "write { power = p }, { one-minus-power = p } or { coupled = \"alpha\", power = 2.0, scale = 1.0, exponent = 1.0 }"

@@ -19,7 +19,7 @@
 //! on-miss = "fail"                 # or "report": a texel that misses the tolerance is counted, not an error
 //! reconstruction = "on"            # or "off": measure the reader's error between texels
 //! # size = "auto"                  # instead of lengths: find them, see below
-//! texels = "exact"                 # or "least-squares", "minimax": fitted to the reader, see below
+//! texels = "exact"                 # or "least-squares", "minimax", "auto": fitted to the reader, see below
 //!
 //! [[table.axis]]                   # first is x (fastest), second y, third z; none at all: the kind's defaults
 //! id = "mu"                        # required; a quantity: mu, roughness, alpha, eta, ...
@@ -48,8 +48,10 @@
 //! * **Fitted texels**: `texels = "least-squares"` or `"minimax"` stores not the value at each texel but the values that read,
 //!   interpolated, with the least mean square or the least largest error; the file says so, with the errors of all three
 //!   choices. It costs 16 to 64 integrals a texel (two axes), a texel is no sample any more, and the laws are those of the integrals:
-//!   fitted channels stay in their ranges, but sums of them may pass a bound by as much as they read wrong. Not with `size`.
-//!   See [`grid::fit`](crate::grid::fit).
+//!   fitted channels stay in their ranges, but sums of them may pass a bound by as much as they read wrong. `"auto"` takes for
+//!   each channel the fit that reads better than exact values in all of largest and mean error, over the whole and the
+//!   practical domain, if one does, and exact values otherwise; it is what the tables of engines hold. With `size`, every trial
+//!   is fitted. See [`grid::fit`](crate::grid::fit).
 //! * **Laws** that a table is known to break are waived by `waive = [{ law = "energy", reason = "..." }]`; the file
 //!   then says that it is not verified, with the reason. A law that the kind does not check cannot be waived.
 //!

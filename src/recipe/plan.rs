@@ -8,7 +8,7 @@ use super::outputs::{self, Output};
 use super::section::unknown_word;
 use super::sizing::Sizing;
 use super::{TOLERANCE, name};
-use crate::grid::fit::Objective;
+use crate::grid::fit::Texels;
 use crate::grid::provenance::{SizeRecord, Waiver};
 use crate::tables::driver::OnMiss;
 use crate::tables::spec::Request;
@@ -52,7 +52,7 @@ pub struct PlannedTable {
     /// What its size must achieve, if that is to be found; the axes then have lengths that stand in.
     pub size: Option<Sizing>,
     /// What its texels hold.
-    pub texels: Objective,
+    pub texels: Texels,
     /// How its size was found, once it is.
     pub found: Option<SizeRecord>,
     /// Laws that it may break, in the order of [`LAWS`](crate::verify::LAWS).
@@ -104,8 +104,8 @@ pub struct TableRequest {
     pub reconstruction: bool,
     /// What its size must achieve. With axes in the request, [`Sizing::axes`] are those whose lengths stand in.
     pub size: Option<Sizing>,
-    /// What its texels hold; the values at their places, unless `size` is none and this says otherwise.
-    pub texels: Objective,
+    /// What its texels hold.
+    pub texels: Texels,
     /// Laws that it may break.
     pub waivers: Vec<Waiver>,
 }
@@ -122,7 +122,7 @@ impl TableRequest {
             outputs: vec![outputs::default()],
             reconstruction: true,
             size: None,
-            texels: Objective::Exact,
+            texels: Texels::default(),
             waivers: Vec::new(),
         }
     }

@@ -150,8 +150,15 @@ fn quality(lines: &mut Lines, p: &Provenance) {
     }
     if let Some(t) = &p.texels {
         lines.item("texels", &format!("{}: {}", t.held, t.meaning));
-        if t.held != t.asked {
-            lines.item("", &format!("{} was asked for and reads no better", t.asked));
+        for c in &t.by_channel {
+            lines.item("", &format!("{}: {}", c.channel, c.held));
+        }
+        match t.asked.as_str() {
+            "auto" => {
+                lines.item("", "chosen because it reads better by every measure, or exact where nothing does")
+            }
+            asked if asked != t.held => lines.item("", &format!("{asked} was asked for and reads no better")),
+            _ => {}
         }
         let (n, change) = (t.samples, number(t.largest_change));
         lines.item("", &format!("fitted to {n} integrals, at most {change} from the values at their places"));

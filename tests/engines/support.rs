@@ -1,6 +1,7 @@
 //! Files of engines, baked and shipped, and the lookup that a shader does: written here anew, not taken from the library.
 
 use brdfbake::encode::read;
+use brdfbake::grid::fit::Texels;
 use brdfbake::pipeline::{self, Settings, Silent};
 use brdfbake::recipe::{self, Plan};
 use half::f16;
@@ -49,6 +50,12 @@ impl Texture {
 pub(crate) fn plan(id: &str, wanted: impl Fn(&str) -> bool) -> Plan {
     let mut plan = recipe::engine(id).unwrap().plan().unwrap_or_else(|e| panic!("{e}"));
     plan.tables.retain(|t| wanted(&t.name));
+    plan
+}
+
+/// The same with a sample in every texel, whatever the engine's recipe says: to be compared with another program's samples.
+pub(crate) fn exact(mut plan: Plan) -> Plan {
+    plan.tables.iter_mut().for_each(|t| t.texels = Texels::default());
     plan
 }
 

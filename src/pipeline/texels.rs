@@ -1,0 +1,206 @@
+//! What the texels of a file hold: the integrals, or values fitted to the reader; and which of them, where the recipe leaves
+//! that open.
+
+use super::fit::{Figures, Fitted};
+use crate::encode::{self, Quantised, RangeFault, Storage};
+use crate::grid::Table;
+use crate::grid::fit::{Objective, Texels};
+use crate::grid::provenance::{ChannelTexels, ChoiceRecord, Reconstruction, Spread, TexelRecord};
+use crate::grid::table::named;
+use crate::tables::Bound;
+use crate::verify::reconstruction::Probe;
+
+/// What a fit must leave of the errors of the exact values, in the geometric mean of its four figures, to be worth that a texel
+/// is no sample any more.
+const WORTH: f64 = 0.9;
+/// Errors below this count as equal.
+const NEGLIGIBLE: f64 = 1e-12;
+
+/// The integrals of a table, what was fitted to them, and what measures how either reads.
+pub(super) struct Source<'a> {
+    pub(super) bound: &'a Bound,
+    pub(super) table: &'a Table,
+    pub(super) fitted: Option<&'a Fitted>,
+    pub(super) probe: Option<&'a Probe<'a>>,
+}
+
+/// The numbers of a file.
+pub(super) struct Chosen {
+    pub(super) stored: Quantised,
+    pub(super) reconstruction: Option<Reconstruction>,
+    pub(super) texels: Option<TexelRecord>,
+}
+
+/// Values for all channels as they are stored, and how they read at the points of the fit.
+struct Candidate {
+    stored: Quantised,
+    figures: Vec<[Figures; 2]>,
+}
+
+impl Source<'_> {
+    /// Rounds and measures what is asked for, and all choices where texels are fitted. Minimax that reads no better than
+    /// the integrals, as stored, gives way to them.
+    pub(super) fn choose(&self, asked: Texels, storage: Storage) -> Result<Chosen, RangeFault> {
+        let Some(fitted) = self.fitted else {
+            let stored = encode::quantise_table(self.table, storage)?;
+            let reconstruction = self.probe.map(|p| p.measure(&stored.values));
+            return Ok(Chosen { stored, reconstruction, texels: None });
+        };
+        let n = self.table.channels.len();
+        let [exact, squares, minimax] = Objective::ALL.map(|o| self.candidate(fitted, &vec![o; n], storage));
+        let mut all = vec![exact?, squares?, minimax?];
+        let measured = [0, 1, 2].map(|i| self.measure(fitted, &all[i], i > 0));
+        let held = match asked {
+            Texels::Held(Objective::Minimax) if no_better(&measured) => vec![Objective::Exact; n],
+            Texels::Held(objective) => vec![objective; n],
+            Texels::Better => self.better(fitted, &all, storage)?,
+        };
+        let mut record = self.record(fitted, asked, &held);
+        for (objective, r) in Objective::ALL.iter().zip(&measured).filter_map(|(o, r)| Some((o, r.as_ref()?)))
+        {
+            record.choices.push(ChoiceRecord {
+                texels: objective.id().to_owned(),
+                whole: r.whole.clone(),
+                practical: r.practical.clone(),
+            });
+        }
+        let index = Objective::ALL.iter().position(|o| held.iter().all(|h| h == o));
+        let (stored, reconstruction) = match index {
+            Some(i) => (all.swap_remove(i).stored, measured[i].clone()),
+            None => {
+                let mixed = self.candidate(fitted, &held, storage)?;
+                let reconstruction = self.measure(fitted, &mixed, true);
+                (mixed.stored, reconstruction)
+            }
+        };
+        Ok(Chosen { stored, reconstruction, texels: Some(record) })
+    }
+
+    fn record(&self, fitted: &Fitted, asked: Texels, held: &[Objective]) -> TexelRecord {
+        let values = self.mix(fitted, held);
+        let change = values.iter().zip(&self.table.values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let first = held.first().copied().unwrap_or_default();
+        let mut record = TexelRecord {
+            asked: asked.id().to_owned(),
+            held: first.id().to_owned(),
+            by_channel: Vec::new(),
+            meaning: first.meaning().to_owned(),
+            samples: fitted.points(),
+            largest_change: change,
+            choices: Vec::new(),
+        };
+        if held.iter().any(|h| *h != first) {
+            "by-channel".clone_into(&mut record.held);
+            "texels of fitted channels are not samples: together they read, interpolated, closest to the truth"
+                .clone_into(&mut record.meaning);
+            record.by_channel = self
+                .table
+                .channels
+                .iter()
+                .zip(held)
+                .map(|(c, h)| ChannelTexels { channel: c.id.clone(), held: h.id().to_owned() })
+                .collect();
+        }
+        record
+    }
+
+    /// `[texel][channel]`, each channel of its objective.
+    fn mix(&self, fitted: &Fitted, held: &[Objective]) -> Vec<f64> {
+        let exact = &self.table.values;
+        let of: Vec<&[f64]> = held.iter().map(|o| fitted.values(*o, exact)).collect();
+        (0..exact.len()).map(|i| of[i % of.len()][i]).collect()
+    }
+
+    fn candidate(
+        &self,
+        fitted: &Fitted,
+        held: &[Objective],
+        storage: Storage,
+    ) -> Result<Candidate, RangeFault> {
+        let table = Table { values: self.mix(fitted, held), ..self.table.clone() };
+        let stored = encode::quantise_table(&table, storage)?;
+        let figures = fitted.figures(self.bound, &stored.values);
+        Ok(Candidate { stored, figures })
+    }
+
+    /// What the probe finds between the texels; with `everywhere` also at the points of the fit: fitted texels are off at their
+    /// own places too.
+    fn measure(&self, fitted: &Fitted, candidate: &Candidate, everywhere: bool) -> Option<Reconstruction> {
+        let mut found = self.probe?.measure(&candidate.stored.values);
+        if everywhere {
+            found.points += fitted.points();
+            self.raise(fitted, candidate, 0, &mut found.whole);
+            if let Some(practical) = &mut found.practical {
+                self.raise(fitted, candidate, 1, practical);
+            }
+        }
+        Some(found)
+    }
+
+    /// Takes the largest error at the points of the fit if it is larger.
+    fn raise(&self, fitted: &Fitted, candidate: &Candidate, part: usize, spread: &mut Spread) {
+        let channels = self.bound.baker.decoded().unwrap_or(&self.bound.spec.layout.channels);
+        for (channel, figures) in channels.iter().zip(&candidate.figures) {
+            let Figures { largest, at, .. } = figures[part];
+            if largest > spread.largest.value {
+                spread.largest.value = largest;
+                channel.id.clone_into(&mut spread.largest.channel);
+                spread.largest.at = named(&self.table.grid, fitted.point(at));
+            }
+        }
+    }
+
+    /// What each channel should hold: the best of what is better than the exact values, for each by itself where the shader
+    /// takes them as they are; if channels that are stored together then spoil each other, for all of them.
+    fn better(
+        &self,
+        fitted: &Fitted,
+        all: &[Candidate],
+        storage: Storage,
+    ) -> Result<Vec<Objective>, RangeFault> {
+        let n = self.table.channels.len();
+        if self.bound.baker.decoded().is_none() {
+            let alone: Vec<Objective> = (0..n).map(|c| best(all, c..=c)).collect();
+            let mixed = self.candidate(fitted, &alone, storage)?;
+            if (0..n).all(|c| gain(&all[0].figures[c], &mixed.figures[c]).is_some()) {
+                return Ok(alone);
+            }
+        }
+        let last = all[0].figures.len().saturating_sub(1);
+        Ok(vec![best(all, 0..=last); n])
+    }
+}
+
+/// The objective that gains most on channels of which it is worse by no measure; exact if none gains enough.
+fn best(all: &[Candidate], channels: std::ops::RangeInclusive<usize>) -> Objective {
+    let mut best = (libm::log(WORTH), Objective::Exact);
+    for (objective, candidate) in Objective::ALL.into_iter().zip(all).skip(1) {
+        let gains: Option<Vec<f64>> =
+            channels.clone().map(|c| gain(&all[0].figures[c], &candidate.figures[c])).collect();
+        let Some(gains) = gains else { continue };
+        let mean = gains.iter().sum::<f64>() / gains.len().max(1) as f64;
+        if mean < best.0 {
+            best = (mean, objective);
+        }
+    }
+    best.1
+}
+
+/// Mean logarithm of the ratios of the four figures of a channel; none if one of them is worse.
+fn gain(exact: &[Figures; 2], fitted: &[Figures; 2]) -> Option<f64> {
+    let mut sum = 0.0;
+    for (e, f) in exact.iter().zip(fitted) {
+        for (e, f) in [(e.largest, f.largest), (e.mean, f.mean)] {
+            if f > e + NEGLIGIBLE {
+                return None;
+            }
+            sum += libm::log((f + NEGLIGIBLE) / (e + NEGLIGIBLE));
+        }
+    }
+    Some(0.25 * sum)
+}
+
+fn no_better(measured: &[Option<Reconstruction>; 3]) -> bool {
+    let largest = |i: usize| measured[i].as_ref().map(|r| r.whole.largest.value);
+    largest(0).zip(largest(2)).is_some_and(|(exact, minimax)| minimax >= exact)
+}
