@@ -220,7 +220,7 @@ fn a_size_is_found_for_fitted_texels() {
     let plan = |texels: &str| {
         let source = format!(
             "name = 'x'\n[[table]]\nkind = 'dfg'\nname = 't'\ntexels = '{texels}'\n\
-             size = {{ error = 4e-3, domain = 'practical', longest = 64 }}\n\
+             size = {{ error = 4e-3, domain = 'practical', longest = 48 }}\n\
              [[table.axis]]\nid = 'mu'\n[[table.axis]]\nid = 'roughness'\n"
         );
         parse(&source, "x.toml").unwrap_or_else(|e| panic!("{e}"))

@@ -15,6 +15,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Intervals into which a cell is divided along each axis, with the most points for which they are taken; the first that
 /// fits is. Small tables can have a ridge within a cell, which four intervals miss.
 const PER_CELL: [(usize, usize); 3] = [(8, 1 << 17), (4, LIMIT), (2, LIMIT)];
+/// The same for a trial, which only has to tell whether a table is worth the full fit.
+const PER_CELL_QUICK: [(usize, usize); 2] = [(4, 1 << 14), (2, LIMIT)];
 /// Most points of the truth.
 const LIMIT: usize = 1 << 22;
 
@@ -90,17 +92,19 @@ impl Fitted {
     }
 }
 
-/// Fits every channel of a table by itself; `bound` is what bakes it. A point where the integral fails is left out; the laws report those.
+/// Fits every channel of a table by itself; `bound` is what bakes it, a `quick` fit has fewer points. A point where the integral fails is left out; the laws report those.
 pub(super) fn fit(
     planned: &PlannedTable,
     bound: &Bound,
     table: &Table,
     tolerance: f64,
+    quick: bool,
     cancel: &AtomicBool,
 ) -> Result<Fitted, PipelineError> {
     let grid = &table.grid;
-    let per_cell = PER_CELL.into_iter().find(|(k, most)| places_count(grid, *k) <= *most);
-    let (per_cell, _) = per_cell.ok_or_else(|| PipelineError::Fit {
+    let choices: &[(usize, usize)] = if quick { &PER_CELL_QUICK } else { &PER_CELL };
+    let per_cell = choices.iter().find(|(k, most)| places_count(grid, *k) <= *most);
+    let (per_cell, _) = *per_cell.ok_or_else(|| PipelineError::Fit {
         table: planned.name.clone(),
         points: places_count(grid, 2),
         limit: LIMIT,

@@ -216,8 +216,8 @@ impl<'a> Search<'a> {
         read[..channels].iter().zip(&fresh).map(|(r, f)| (r - f).abs()).fold(0.0, f64::max)
     }
 
-    /// The full trial: error of every output as it is stored.
-    fn trial(&self, grid: Grid) -> Result<f64, PipelineError> {
+    /// The full trial: error of every output as it is stored; fitted texels may be fitted to fewer points.
+    fn trial(&self, grid: Grid, quick: bool) -> Result<f64, PipelineError> {
         self.cancelled()?;
         self.trials.fetch_add(1, Ordering::Relaxed);
         let bound = self.bind(grid)?;
@@ -233,7 +233,7 @@ impl<'a> Search<'a> {
         let texels = self.planned.texels;
         let fitted = match texels.are_exact() {
             true => None,
-            false => Some(fit::fit(self.planned, &bound, &table, self.tolerance, self.cancel)?),
+            false => Some(fit::fit(self.planned, &bound, &table, self.tolerance, quick, self.cancel)?),
         };
         let probe = Probe::new(&bound, self.tolerance, COMPARED);
         let source = Source { bound: &bound, table: &table, fitted: fitted.as_ref(), probe: Some(&probe) };
@@ -271,14 +271,17 @@ impl<'a> Search<'a> {
             }
             choices.push(list);
         }
-        for lens in combinations(&choices, self.hope()).into_iter().take(TRIALS) {
+        for lens in combinations(&choices, self.sizing.error).into_iter().take(TRIALS) {
             if lens.iter().product::<usize>() >= limit {
                 break;
             }
             let mut axes = set.to_vec();
             axes.iter_mut().zip(&lens).for_each(|(axis, len)| axis.len = *len);
             let grid = self.grid(axes)?;
-            let error = self.trial(grid.clone())?;
+            let mut error = self.trial(grid.clone(), true)?;
+            if error <= self.sizing.error && !self.planned.texels.are_exact() {
+                error = self.trial(grid.clone(), false)?;
+            }
             if error <= self.sizing.error {
                 return Ok(Some(Found { grid, error }));
             }

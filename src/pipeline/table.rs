@@ -69,7 +69,7 @@ pub(super) fn make(
     // the laws are those of the integrals; what is fitted to them is judged by how it reads
     let fitted = match planned.texels.are_exact() {
         true => None,
-        false => Some(fit::fit(planned, &planned.bound, verified.table(), planned.tolerance, cancel)?),
+        false => Some(fit::fit(planned, &planned.bound, verified.table(), planned.tolerance, false, cancel)?),
     };
     let probe = planned.reconstruction.then(|| Probe::new(&planned.bound, planned.tolerance, COMPARED));
     for (output, file) in planned.outputs.iter().zip(names) {

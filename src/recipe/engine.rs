@@ -118,7 +118,7 @@ pub static ENGINES: &[Engine] = &[
                 file("three-ltc-magnitude", "examples/jsm/lights/RectAreaLightTexturesLib.js", LTC_2),
                 "RectAreaLightTexturesLib.js of 0.187.0, MIT",
                 [9.430e-2, 9.129e-4],
-                [3.303e-2, 6.654e-4]
+                [3.530e-2, 6.654e-4]
             ),
         ]
     ),
@@ -183,7 +183,7 @@ pub static ENGINES: &[Engine] = &[
                 file("playcanvas-ltc-magnitude", "the asset area-light-luts.bin", LTC_2),
                 "area-light-luts.json at 0aaef5e4, MIT; the numbers of ltc.js",
                 [9.430e-2, 9.129e-4],
-                [3.303e-2, 6.654e-4]
+                [3.530e-2, 6.654e-4]
             ),
         ]
     ),
@@ -197,7 +197,7 @@ pub static ENGINES: &[Engine] = &[
                 file("ltc-2", "ltc.js", LTC_2),
                 "fit/results/ltc.js, BSD",
                 [9.430e-2, 9.129e-4],
-                [3.303e-2, 6.654e-4]
+                [3.530e-2, 6.654e-4]
             )
         ]
     ),
@@ -210,7 +210,7 @@ pub static ENGINES: &[Engine] = &[
                 file("cycles-ggx-E", "table_ggx_E in src/scene/shader.tables", CORNERS),
                 "shader.tables at 97dbe6f5, Apache-2.0",
                 [9.719e-2, 7.247e-4],
-                [3.330e-3, 3.074e-4]
+                [6.295e-3, 3.074e-4]
             ),
             measured(
                 file("cycles-ggx-Eavg", "table_ggx_Eavg in src/scene/shader.tables", CORNERS),

@@ -81,7 +81,9 @@ impl<'a> Probe<'a> {
         let mut worst: Vec<&Compared<'_>> = regular.iter().collect();
         // the sort is stable, so equal errors keep the order of the grid
         worst.sort_by(|a, b| b.largest.total_cmp(&a.largest));
-        let practical = worst.iter().filter(|c| in_practical_domain(grid, &c.fresh.point)).take(SEARCHED);
+        // a cell counts if a part of it is inside
+        let inside = |x: &[f64; MAX_AXES]| in_practical_domain(grid, &grid.at_coordinates(x));
+        let practical = worst.iter().filter(|c| around(grid, &c.fresh.x).iter().any(inside)).take(SEARCHED);
         let cells: Vec<[f64; MAX_AXES]> =
             worst.iter().take(SEARCHED).chain(practical).flat_map(|c| around(grid, &c.fresh.x)).collect();
         let fine = self.integrate(&cells);
