@@ -1,0 +1,171 @@
+//! Shader code in other front ends than `naga`: glslang for GLSL and HLSL, with the validator of SPIR-V behind it; and what
+//! `tests/three/shaders.mjs` needs to run GLSL and WGSL in a browser.
+
+use super::code::{folder, grids, points, run, table};
+use super::support::written;
+use brdfbake::encode::Storage;
+use brdfbake::tables::TABLES;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// A fragment shader that calls the lookup, so that nothing of it is left out.
+fn whole(lang: &str, source: &str, arguments: usize, channels: usize) -> String {
+    let arguments = ["a.x", "a.y", "a.z", "a.w"][..arguments].join(", ");
+    let swizzle = &"xyzw"[..channels];
+    match lang {
+        "glsl" => format!(
+            "#version 450\n{source}\nlayout(location = 0) in vec4 a;\nlayout(location = 0) out vec4 o;\n\
+             void main() {{ o = vec4(0.0); o.{swizzle} = dfg_lookup({arguments}); }}\n"
+        ),
+        _ => format!(
+            "{source}\nfloat4 main(float4 a : TEXCOORD0) : SV_Target {{ float4 o = 0.0; o.{swizzle} = dfg_lookup({arguments}); return o; }}\n"
+        ),
+    }
+}
+
+/// Compiles to SPIR-V and validates that; false if a program is not there.
+fn compiles(file: &Path, lang: &str) -> bool {
+    let binary = file.with_extension(format!("{lang}.spv"));
+    let mut glslang = Command::new("glslangValidator");
+    glslang.args(["-V", "-S", "frag", "-e", "main", "--quiet"]);
+    if lang == "hlsl" {
+        glslang.arg("-D");
+    }
+    run(glslang.arg("-o").arg(&binary).arg(file)).is_some()
+        && run(Command::new("spirv-val").arg(&binary)).is_some()
+}
+
+#[test]
+fn glslang_compiles_the_shaders_to_valid_spirv() {
+    let folder = folder("glslang");
+    for (i, axes) in grids().into_iter().enumerate() {
+        for channels in 1..=4 {
+            let t = table(axes.clone(), channels);
+            for lang in ["glsl", "hlsl"] {
+                let source = String::from_utf8(written(&t, lang, Storage::Half, &[]).unwrap().0).unwrap();
+                let file = folder.join(format!("table{i}-{channels}.{lang}"));
+                std::fs::write(&file, whole(lang, &source, axes.len(), channels)).unwrap();
+                if !compiles(&file, lang) {
+                    return;
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn glslang_finds_a_fault() {
+    let folder = folder("glslang-fault");
+    let t = table(grids().remove(1), 2);
+    for lang in ["glsl", "hlsl"] {
+        let source = String::from_utf8(written(&t, lang, Storage::Half, &[]).unwrap().0).unwrap();
+        let file = folder.join(format!("fault.{lang}"));
+        std::fs::write(&file, whole(lang, &source.replacen("_lookup(", "_look(", 1), 2, 2)).unwrap();
+        let status = Command::new("glslangValidator")
+            .args(["-V", "-S", "frag", "-e", "main", "-D"])
+            .arg(&file)
+            .output();
+        let Ok(output) = status else {
+            eprintln!("skipped: glslangValidator is not there");
+            return;
+        };
+        assert!(!output.status.success(), "{lang}");
+    }
+}
+
+/// The fitted split sum.
+#[test]
+fn glslang_compiles_the_fit() {
+    let folder = folder("glslang-fit");
+    for lang in ["glsl", "hlsl"] {
+        let source =
+            run(Command::new(env!("CARGO_BIN_EXE_brdfbake")).args(["fit", "ggx", "--lang", lang])).unwrap();
+        let (vec2, vec4) = if lang == "glsl" { ("vec2", "vec4") } else { ("float2", "float4") };
+        let at = source.find(&format!("{vec2} ")).unwrap() + vec2.len() + 1;
+        let name = source[at..].split('(').next().unwrap();
+        let main = match lang {
+            "glsl" => format!(
+                "layout(location = 0) in vec4 a;\nlayout(location = 0) out {vec4} o;\nvoid main() {{ o = {vec4}({name}(a.x, a.y), 0.0, 1.0); }}\n"
+            ),
+            _ => format!(
+                "float4 main(float4 a : TEXCOORD0) : SV_Target {{ return float4({name}(a.x, a.y), 0.0, 1.0); }}\n"
+            ),
+        };
+        let version = if lang == "glsl" { "#version 450\n" } else { "" };
+        let file = folder.join(format!("fit.{lang}"));
+        std::fs::write(&file, format!("{version}{source}\n{main}")).unwrap();
+        if !compiles(&file, lang) {
+            return;
+        }
+    }
+}
+
+/// Bakes one kind of table as GLSL and HLSL; none if a shader cannot hold it.
+fn shader_files(recipe: &str, folder: &Path) -> Option<Vec<PathBuf>> {
+    let file = folder.join("recipe.toml");
+    std::fs::write(&file, recipe).unwrap();
+    let mut bake = Command::new(env!("CARGO_BIN_EXE_brdfbake"));
+    let output = bake.arg("bake").arg(&file).arg("-o").arg(folder).arg("--quiet").output().unwrap();
+    if !output.status.success() {
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(told.contains("channels"), "{recipe}: {told}");
+        return None;
+    }
+    let files = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
+    let shader = |p: &PathBuf| p.extension().is_some_and(|e| e == "glsl" || e == "hlsl");
+    Some(files.filter(shader).collect())
+}
+
+/// Every kind of table that a shader can hold, on its own axes.
+#[test]
+#[ignore = "bakes every kind of table: some seconds"]
+fn glslang_compiles_every_kind_of_table() {
+    let (mut compiled, mut too_large) = (Vec::new(), Vec::new());
+    for kind in TABLES.iter().map(|t| t.id) {
+        let folder = tempfile::tempdir().unwrap();
+        // the default tolerance is that of the output, and these are not looked at
+        let recipe = format!(
+            "name = \"one\"\n[[table]]\nkind = \"{kind}\"\nname = \"one\"\nreconstruction = \"off\"\noutputs = [\"glsl:half\", \"hlsl:half\"]\n"
+        );
+        let Some(files) = shader_files(&recipe, folder.path()).filter(|_| kind != "merl") else {
+            too_large.push(kind);
+            continue;
+        };
+        assert_eq!(files.len(), 2, "{kind}");
+        for path in files {
+            let lang = path.extension().and_then(|e| e.to_str()).unwrap().to_owned();
+            let source = std::fs::read_to_string(&path).unwrap();
+            let main =
+                if lang == "glsl" { "void main() {}" } else { "float4 main() : SV_Target { return 0.0; }" };
+            let version = if lang == "glsl" { "#version 450\n" } else { "" };
+            std::fs::write(&path, format!("{version}{source}\n{main}\n")).unwrap();
+            if !compiles(&path, &lang) {
+                return;
+            }
+        }
+        compiled.push(kind);
+    }
+    eprintln!("compiled: {}; no shader: {}", compiled.join(", "), too_large.join(", "));
+    assert!(compiled.len() >= 25, "{compiled:?}");
+}
+
+/// What the browser runs, and what it must read.
+#[test]
+#[ignore = "writes shaders for a browser: BRDFBAKE_FOREIGN=<folder>"]
+fn write_shaders_for_a_browser() {
+    let folder = std::env::var_os("BRDFBAKE_FOREIGN").unwrap_or(env!("CARGO_TARGET_TMPDIR").into());
+    let mut programs = Vec::new();
+    for (i, axes) in grids().into_iter().enumerate() {
+        let channels = 1 + i % 4;
+        let t = table(axes.clone(), channels);
+        let text = |lang: &str| String::from_utf8(written(&t, lang, Storage::Half, &[]).unwrap().0).unwrap();
+        let (at, want): (Vec<_>, Vec<_>) = points(&t, Storage::Half).into_iter().unzip();
+        programs.push(
+            serde_json::json!({"name": format!("table {i}"), "arguments": axes.len(), "channels": channels,
+            "glsl": text("glsl"), "wgsl": text("wgsl"), "at": at, "want": want, "tolerance": 2e-5}),
+        );
+    }
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = Path::new(&folder).join("shaders.json");
+    std::fs::write(file, serde_json::to_string(&programs).unwrap()).unwrap();
+}
