@@ -41,7 +41,9 @@ pub(crate) fn write(folder: &Path) {
                     [&[][..], &[FileOption::Rgba], &[FileOption::Zstd], &[FileOption::Rgba, FileOption::Zstd]]
                 {
                     let options: Vec<FileOption> = layers.iter().chain(more).copied().collect();
-                    if options.iter().all(|o| encoder.options().contains(o)) {
+                    // packed words have their components
+                    let packed = storage == Storage::Rgb9e5 && options.contains(&FileOption::Rgba);
+                    if !packed && options.iter().all(|o| encoder.options().contains(o)) {
                         write_one(folder, container, (lengths, word), storage, &options);
                     }
                 }

@@ -51,6 +51,8 @@ export function environment([scale, bias], f0) {
 
 const round = (v) => Number(v.toFixed(5));
 const mean = (values) => values.reduce((a, b) => a + b, 0) / values.length;
+/** Largest error of the lights themselves, relative to the albedo, for a row to count. */
+const LIGHTS = 1e-3;
 const COSINES = [0.1, 0.25, 0.5, 0.75, 1];
 
 /** The pixels of a sphere: cosine and radiance. */
@@ -117,7 +119,9 @@ export function compare(all) {
     const environments = all.f0.map((f0, f) => ({ f0, rows: all.roughness.map((roughness, i) => ({ roughness, ...spheresRow(all, i, f, f0) })) }));
     const direct = all.direct.roughness.map((_, y) => directRow(all, y));
     const summary = environments.filter(({ f0 }) => f0 !== 1).map(({ f0, rows }) => total(`metal of F0 = ${f0}, environment`, rows));
-    summary.push(total('white metal, directional lights', direct));
+    // where the lights are no sphere, they are what is measured
+    direct.forEach((row) => (row.counted = row.lights <= LIGHTS));
+    summary.push(total('white metal, directional lights', direct.filter((row) => row.counted)));
     const whites = environments.find(({ f0 }) => f0 === 1).rows;
     const white = { largest: Math.max(...whites.flatMap((r) => [r.shipped.largest, r.baked.largest])) };
     return { cosines: COSINES, summary, white, environments, direct };

@@ -34,8 +34,21 @@ function drawn(fragment, width, height, set) {
     return Array.from(pixels);
 }
 
+/** A picture on a canvas of half floats, which keeps 16 bits and converts the gamma of the file to sRGB; none if there is no such canvas. */
+window.deep = async (url) => {
+    const image = new Image();
+    image.src = url;
+    await image.decode();
+    const { width, height } = image;
+    const context = new OffscreenCanvas(width, height).getContext('2d', { colorType: 'float16', colorSpace: 'srgb' });
+    if (context.getContextAttributes?.().colorType !== 'float16') return null;
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, width, height, { pixelFormat: 'rgba-float16' });
+    return { width, height, pixels: Array.from(data, Number) };
+};
+
 /** Codes of a picture in [0, 1], as a texture holds them: the browser's decoder, no colour conversion, no premultiplication. */
-window.picture = async (url, float) => {
+window.picture = async (url) => {
     const blob = await (await fetch(url)).blob();
     const bitmap = await createImageBitmap(blob, { colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
     const { width, height } = bitmap;
@@ -43,8 +56,7 @@ window.picture = async (url, float) => {
     gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
     gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
     gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
-    const [format, type] = float ? [gl.RGBA16F, gl.HALF_FLOAT] : [gl.RGBA8, gl.UNSIGNED_BYTE];
-    gl.texImage2D(gl.TEXTURE_2D, 0, format, gl.RGBA, type, bitmap);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, bitmap);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
     const source = `#version 300 es

@@ -65,7 +65,7 @@ async function run(open, browser, faults) {
     mkdirSync(out, { recursive: true });
     writeFileSync(join(out, 'furnace.json'), `${JSON.stringify(result, null, 1)}\n`);
     writeFileSync(join(out, 'furnace.md'), markdown(result));
-    const png = await picture(shipped.page, { shipped, baked, expected, roughness: ROUGHNESS, f0: F0, radius: RADIUS });
+    const png = await picture(shipped.page, { shipped, baked, expected, roughness: ROUGHNESS, f0: F0, radius: RADIUS, result });
     writeFileSync(join(out, 'furnace.png'), Buffer.from(png, 'base64'));
     console.log(markdown(result));
     console.log(`${browser}, three ${result.three}`);

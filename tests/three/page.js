@@ -131,7 +131,7 @@ window.draw = ({ rows, width, height }) => {
     context.fillRect(0, 0, canvas.width, canvas.height);
     context.fillStyle = '#000';
     context.font = '12px sans-serif';
-    rows.forEach(({ text, rgb }, n) => {
+    rows.forEach(({ text, rgb, labels }, n) => {
         const top = n * (height + line);
         context.fillText(text, 4, top + 13);
         const image = context.createImageData(width, height);
@@ -142,6 +142,10 @@ window.draw = ({ rows, width, height }) => {
             }
         }
         context.putImageData(image, 0, top + line);
+        context.fillStyle = '#000';
+        context.textAlign = 'center';
+        labels.forEach((label, i) => context.fillText(label, ((i + 0.5) * width) / labels.length, top + line + height / 2 + 4));
+        context.textAlign = 'left';
     });
     return canvas.toDataURL('image/png').split(',')[1];
 };
