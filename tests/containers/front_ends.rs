@@ -1,5 +1,5 @@
 //! Shader code in other front ends than `naga`: glslang for GLSL and HLSL, with the validator of SPIR-V behind it; and what
-//! `tests/three/shaders.mjs` needs to run GLSL and WGSL in a browser.
+//! `tests/three/foreign.mjs` needs to run GLSL and WGSL in a browser.
 
 use super::code::{folder, grids, points, run, table};
 use super::support::written;
@@ -8,31 +8,36 @@ use brdfbake::tables::TABLES;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A fragment shader that calls the lookup, so that nothing of it is left out.
-fn whole(lang: &str, source: &str, arguments: usize, channels: usize) -> String {
+/// A fragment shader that calls a function, so that nothing of it is left out.
+fn whole(lang: &str, name: &str, source: &str, arguments: usize, channels: usize) -> String {
     let arguments = ["a.x", "a.y", "a.z", "a.w"][..arguments].join(", ");
     let swizzle = &"xyzw"[..channels];
     match lang {
         "glsl" => format!(
             "#version 450\n{source}\nlayout(location = 0) in vec4 a;\nlayout(location = 0) out vec4 o;\n\
-             void main() {{ o = vec4(0.0); o.{swizzle} = dfg_lookup({arguments}); }}\n"
+             void main() {{ o = vec4(0.0); o.{swizzle} = {name}({arguments}); }}\n"
         ),
         _ => format!(
-            "{source}\nfloat4 main(float4 a : TEXCOORD0) : SV_Target {{ float4 o = 0.0; o.{swizzle} = dfg_lookup({arguments}); return o; }}\n"
+            "{source}\nfloat4 main(float4 a : TEXCOORD0) : SV_Target {{ float4 o = 0.0; o.{swizzle} = {name}({arguments}); return o; }}\n"
         ),
     }
+}
+
+/// The command that compiles a fragment shader to SPIR-V.
+fn glslang(file: &Path, lang: &str, binary: &Path) -> Command {
+    let mut command = Command::new("glslangValidator");
+    command.args(["-V", "-S", "frag", "-e", "main", "--quiet"]);
+    if lang == "hlsl" {
+        command.arg("-D");
+    }
+    command.arg("-o").arg(binary).arg(file);
+    command
 }
 
 /// Compiles to SPIR-V and validates that; false if a program is not there.
 fn compiles(file: &Path, lang: &str) -> bool {
     let binary = file.with_extension(format!("{lang}.spv"));
-    let mut glslang = Command::new("glslangValidator");
-    glslang.args(["-V", "-S", "frag", "-e", "main", "--quiet"]);
-    if lang == "hlsl" {
-        glslang.arg("-D");
-    }
-    run(glslang.arg("-o").arg(&binary).arg(file)).is_some()
-        && run(Command::new("spirv-val").arg(&binary)).is_some()
+    run(&mut glslang(file, lang, &binary)).is_some() && run(Command::new("spirv-val").arg(&binary)).is_some()
 }
 
 #[test]
@@ -44,7 +49,7 @@ fn glslang_compiles_the_shaders_to_valid_spirv() {
             for lang in ["glsl", "hlsl"] {
                 let source = String::from_utf8(written(&t, lang, Storage::Half, &[]).unwrap().0).unwrap();
                 let file = folder.join(format!("table{i}-{channels}.{lang}"));
-                std::fs::write(&file, whole(lang, &source, axes.len(), channels)).unwrap();
+                std::fs::write(&file, whole(lang, "dfg_lookup", &source, axes.len(), channels)).unwrap();
                 if !compiles(&file, lang) {
                     return;
                 }
@@ -60,40 +65,32 @@ fn glslang_finds_a_fault() {
     for lang in ["glsl", "hlsl"] {
         let source = String::from_utf8(written(&t, lang, Storage::Half, &[]).unwrap().0).unwrap();
         let file = folder.join(format!("fault.{lang}"));
-        std::fs::write(&file, whole(lang, &source.replacen("_lookup(", "_look(", 1), 2, 2)).unwrap();
-        let status = Command::new("glslangValidator")
-            .args(["-V", "-S", "frag", "-e", "main", "-D"])
-            .arg(&file)
-            .output();
-        let Ok(output) = status else {
-            eprintln!("skipped: glslangValidator is not there");
-            return;
-        };
-        assert!(!output.status.success(), "{lang}");
+        for (name, good) in [("dfg_lookup", true), ("dfg_look", false)] {
+            std::fs::write(&file, whole(lang, name, &source, 2, 2)).unwrap();
+            let Ok(output) = glslang(&file, lang, &file.with_extension("spv")).output() else {
+                eprintln!("skipped: glslangValidator is not there");
+                return;
+            };
+            assert_eq!(output.status.success(), good, "{lang}: {name}");
+        }
     }
 }
 
-/// The fitted split sum.
+/// The fitted split sum: its last function is the one that a shader calls.
 #[test]
 fn glslang_compiles_the_fit() {
     let folder = folder("glslang-fit");
     for lang in ["glsl", "hlsl"] {
-        let source =
-            run(Command::new(env!("CARGO_BIN_EXE_brdfbake")).args(["fit", "ggx", "--lang", lang])).unwrap();
-        let (vec2, vec4) = if lang == "glsl" { ("vec2", "vec4") } else { ("float2", "float4") };
-        let at = source.find(&format!("{vec2} ")).unwrap() + vec2.len() + 1;
-        let name = source[at..].split('(').next().unwrap();
-        let main = match lang {
-            "glsl" => format!(
-                "layout(location = 0) in vec4 a;\nlayout(location = 0) out {vec4} o;\nvoid main() {{ o = {vec4}({name}(a.x, a.y), 0.0, 1.0); }}\n"
-            ),
-            _ => format!(
-                "float4 main(float4 a : TEXCOORD0) : SV_Target {{ return float4({name}(a.x, a.y), 0.0, 1.0); }}\n"
-            ),
-        };
-        let version = if lang == "glsl" { "#version 450\n" } else { "" };
+        let mut fit = Command::new(env!("CARGO_BIN_EXE_brdfbake"));
+        let source = run(fit.args(["fit", "ggx", "--lang", lang])).unwrap();
+        let head = |l: &&str| ["vec", "float"].iter().any(|t| l.starts_with(t)) && l.ends_with('{');
+        let line = source.lines().rfind(head).unwrap();
+        let (kind, call) = line.split_once(' ').unwrap();
+        let channels = kind.trim_start_matches(char::is_alphabetic).parse().unwrap();
+        let (name, arguments) = call.split_once('(').unwrap();
+        let whole = whole(lang, name, &source, arguments.split(',').count(), channels);
         let file = folder.join(format!("fit.{lang}"));
-        std::fs::write(&file, format!("{version}{source}\n{main}")).unwrap();
+        std::fs::write(&file, whole).unwrap();
         if !compiles(&file, lang) {
             return;
         }

@@ -3,7 +3,7 @@
 import { environment } from './energy.mjs';
 
 const fixed = (v, n = 4) => v.toFixed(n);
-const power = (v) => v.toExponential(1);
+const power = (v, n = 1) => v.toExponential(n);
 
 /** Energies side by side, in Markdown. */
 export function markdown({ summary, white, environments, direct, three }) {
@@ -25,7 +25,7 @@ export function markdown({ summary, white, environments, direct, three }) {
     }
     lines.push('', '| all of them | shipped: mean, largest | baked: mean, largest |', '|---|---|---|');
     for (const { what, shipped: s, baked: b } of summary) {
-        lines.push(`| ${what} | ${power(s.mean)}, ${power(s.largest)} | ${power(b.mean)}, ${power(b.largest)} |`);
+        lines.push(`| ${what} | ${power(s.mean, 3)}, ${power(s.largest)} | ${power(b.mean, 3)}, ${power(b.largest)} |`);
     }
     lines.push('', `White metal in a white environment is within ${power(white.largest)} of 1 with either: the compensation cancels the table.`);
     return `${lines.join('\n')}\n`;
