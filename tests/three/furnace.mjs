@@ -8,6 +8,8 @@
 // show the compensation of direct light. Expected are the formulas of three's shader with accurate integrals (expected.toml), not with
 // texels of a table.
 //
+// `--texels least-squares` bakes the table with texels that are fitted to the reader.
+//
 // Writes furnace.json, furnace.md and furnace.png. Exit code: 0 the baked table was loaded and is nearer on average, 1 not, 77 skipped.
 
 import { execFileSync } from 'node:child_process';
@@ -36,6 +38,16 @@ const REPLACED = 'src/renderers/shaders/DFGLUTData.js';
 const three = packageFolder('three');
 const temporary = mkdtempSync(join(tmpdir(), 'brdfbake-three-'));
 const bake = (...what) => execFileSync(brdfbake, ['bake', ...what, '-o', temporary, '--quiet'], { stdio: 'inherit' });
+
+/** What to bake: the engine's tables, or the same recipe with a line more. */
+function table() {
+    const texels = option('--texels');
+    if (texels === undefined) return ['--engine', 'three'];
+    const preset = readFileSync(join(here, '../../presets/engines/three.toml'), 'utf8');
+    const recipe = join(temporary, 'recipe.toml');
+    writeFileSync(recipe, preset.replace('layout = "scale-bias"', `layout = "scale-bias"\ntexels = "${texels}"`));
+    return [recipe];
+}
 
 /** The files of the two pages: /shipped/ and /baked/ differ in one. */
 let served = 0;
@@ -86,7 +98,7 @@ async function run(open, browser, faults) {
 
 let code = 1;
 try {
-    bake('--engine', 'three');
+    bake(...table());
     bake(join(here, 'expected.toml'));
     code = await withBrowser(find, run);
 } finally {
