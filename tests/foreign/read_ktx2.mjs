@@ -26,7 +26,7 @@ function half(bits) {
     return s ? -v : v;
 }
 
-/** Components of a texel, by storage; channel ranges are [0, 1]. */
+/** Components of a texel, by storage; channel ranges are [0, 1]. Nothing for a storage that this script cannot decode. */
 function texels(data, storage, n) {
     const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
     const out = [];
@@ -47,6 +47,7 @@ function texels(data, storage, n) {
         rgb9e5: () => packed((w) => [0, 9, 18].map((s) => ((w >>> s) & 511) * 2 ** ((w >>> 27) - 24))),
         rgbd: () => packed((w) => [0, 8, 16].map((s) => (((w >>> s) & 255) / 255) ** 2.2 / ((w >>> 24) / 255))),
     };
+    if (!(storage in reader)) return undefined;
     reader[storage]();
     return out;
 }
@@ -71,6 +72,12 @@ for (const name of files) {
     // packed words are cut to the channels; other texels may have components beyond them
     const components = ['rgb10a2', 'rgb9e5', 'rgbd'].includes(expected.storage) ? names.length : (expected.components ?? names.length);
     const got = texels(data, expected.storage, components);
+    if (got === undefined) {
+        console.log(`SKIPPED: the texels of ${name}; its header is read`);
+        failed += faults.length > 0;
+        if (faults.length) console.log(`FAIL ${name}: ${faults.join('; ')}`);
+        continue;
+    }
     if (got.length !== components * expected.channels[names[0]].length) faults.push(`${got.length} values`);
     for (let c = names.length; c < components; c++) {
         if (got.some((v, i) => i % components === c && v !== expected.fill[c - names.length])) faults.push(`component ${c}`);
