@@ -17,6 +17,8 @@ mod code;
 mod dds_file;
 #[path = "containers/exr_file.rs"]
 mod exr_file;
+#[path = "containers/front_ends.rs"]
+mod front_ends;
 #[path = "containers/hostile.rs"]
 mod hostile;
 #[path = "containers/ktx2_file.rs"]

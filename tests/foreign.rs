@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stderr, reason = "tests")]
 
 mod sample;
+#[path = "foreign/shapes.rs"]
+mod shapes;
 
 use brdfbake::encode::read::read_file;
 use brdfbake::encode::{ENCODERS, quantise_table};
@@ -16,7 +18,7 @@ fn write_for_foreign_readers() {
     std::fs::create_dir_all(&folder).unwrap();
     let names = ["dfg.scale", "dfg.bias", "a", "z.cloth"];
     assert_eq!(grid().len(), 35);
-    for encoder in ENCODERS.iter().filter(|e| ["exr", "png", "hdr", "npy", "ktx2"].contains(&e.id())) {
+    for encoder in ENCODERS.iter().filter(|e| ["exr", "png", "hdr", "npy", "ktx2", "dds"].contains(&e.id())) {
         for &storage in encoder.storages() {
             let most = encoder.most_channels().min(storage.most_channels().unwrap_or(4)).min(4);
             for n in 1..=most {
@@ -39,6 +41,7 @@ fn write_for_foreign_readers() {
             }
         }
     }
+    shapes::write(&folder);
 }
 
 /// Reads the files of `tests/foreign/write_out.py`.

@@ -17,7 +17,7 @@ fn coupled(to: &str, power: f64, scale: f64, exponent: f64) -> Warp {
 }
 
 /// Grids with every warp, texel convention, direction, and derived quantity.
-fn grids() -> Vec<Vec<Axis>> {
+pub(crate) fn grids() -> Vec<Vec<Axis>> {
     use Texel::{Center, Endpoint};
     let turned = |a: Axis| Axis { direction: Direction::Descending, ..a };
     vec![
@@ -49,7 +49,7 @@ fn grids() -> Vec<Vec<Axis>> {
 }
 
 /// A table with values that have no pattern, some of them negative, large or tiny.
-fn table(axes: Vec<Axis>, channels: usize) -> Table {
+pub(crate) fn table(axes: Vec<Axis>, channels: usize) -> Table {
     let grid = Grid::new(axes).unwrap();
     let n = grid.len() * channels;
     let x = |i: usize| (i as f64 * 0.618_033_988_749_895 + 0.1).fract() - 0.3;
@@ -65,7 +65,7 @@ fn table(axes: Vec<Axis>, channels: usize) -> Table {
 }
 
 /// Points inside, on the ends and beyond them, in the quantities of the axes, and what the reference reads there.
-fn points(t: &Table, storage: Storage) -> Vec<(Vec<f64>, Vec<f64>)> {
+pub(crate) fn points(t: &Table, storage: Storage) -> Vec<(Vec<f64>, Vec<f64>)> {
     let values = quantise_table(t, storage).unwrap().values;
     let mut points = Vec::new();
     for i in 0..60 {
@@ -95,14 +95,14 @@ fn points(t: &Table, storage: Storage) -> Vec<(Vec<f64>, Vec<f64>)> {
     points
 }
 
-fn folder(name: &str) -> PathBuf {
+pub(crate) fn folder(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("code-{name}"));
     std::fs::create_dir_all(&folder).unwrap();
     folder
 }
 
 /// Runs a command; none if there is no such program.
-fn run(command: &mut Command) -> Option<String> {
+pub(crate) fn run(command: &mut Command) -> Option<String> {
     let output = match command.output() {
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
             eprintln!("skipped: {} is not there", command.get_program().display());
