@@ -21,6 +21,21 @@ pub struct Panels {
     weights: Vec<f64>,
 }
 
+/// Longest panel, in radians: reflectances of thin fibres fall by orders of magnitude between normal and horizon.
+const LONGEST: f64 = 0.2;
+
+/// The edges with those of the halves of panels that are too long.
+fn split(edges: &[f64]) -> Vec<f64> {
+    let mut out = vec![0.0];
+    for pair in edges.windows(2) {
+        if pair[1] - pair[0] > LONGEST {
+            out.push(0.5 * (pair[0] + pair[1]));
+        }
+        out.push(pair[1]);
+    }
+    out
+}
+
 impl Panels {
     /// Panels that resolve `scale` radians round the normal.
     pub fn new(scale: f64, order: usize) -> Panels {
@@ -38,6 +53,7 @@ impl Panels {
             edges.push(FRAC_PI_2 - at);
         }
         edges.push(FRAC_PI_2);
+        let edges = split(&edges);
         let rule = gauss::rule(order);
         let (mut theta, mut width) = (Vec::new(), Vec::new());
         for pair in edges.windows(2) {
