@@ -54,7 +54,7 @@ pub fn single_scattering(sigma: f64, wo: DVec3, wi: DVec3) -> f64 {
 /// `r = d/(c + √(c² − d²))`.
 /// Source: [Heitz2015](crate::cite::HEITZ_2015) Eq. 11 and 13 for K. Law: `2π ∫ K_0 sin = ` [`projected_area`].
 /// Guard: equal angles give the limit `1/(4πσ)`. Near them K is a constant less two small terms, and is formed so.
-/// Accuracy: absolute 1e-13 of `K_0` (`tests/terms/sggx.rs`).
+/// Accuracy: absolute 1e-13 of `K_0` (`tests/sheen.rs`).
 pub fn kernel_modes(sigma: f64, from: f64, to: f64, difference: f64, modes: &mut [f64]) {
     let (s2, half, mean) = (sigma * sigma, libm::sin(0.5 * difference), 0.5 * (from + to));
     let (sin, other) = (libm::sin(from), libm::sin(to));

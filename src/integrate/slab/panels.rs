@@ -8,15 +8,15 @@ const HORIZON: f64 = 1e-3;
 
 /// Nodes on panels that are graded towards the normal and the horizon.
 #[derive(Debug, Clone)]
-pub struct Panels {
+pub(super) struct Panels {
     /// Polar angles in [0, pi/2], rising.
-    pub edges: Vec<f64>,
+    pub(super) edges: Vec<f64>,
     /// Nodes a panel.
-    pub order: usize,
+    pub(super) order: usize,
     /// Polar angles of the nodes.
-    pub theta: Vec<f64>,
+    pub(super) theta: Vec<f64>,
     /// Weights of the nodes for integrals over the angle.
-    pub width: Vec<f64>,
+    pub(super) width: Vec<f64>,
     /// Weights of the barycentric formula on the unit interval.
     weights: Vec<f64>,
 }
@@ -38,7 +38,7 @@ fn split(edges: &[f64]) -> Vec<f64> {
 
 impl Panels {
     /// Panels that resolve `scale` radians round the normal.
-    pub fn new(scale: f64, order: usize) -> Panels {
+    pub(super) fn new(scale: f64, order: usize) -> Panels {
         let mut edges = vec![FRAC_PI_4];
         let mut at = FRAC_PI_4;
         while at > 0.7 * scale {
@@ -67,12 +67,12 @@ impl Panels {
     }
 
     /// Number of panels.
-    pub fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.edges.len() - 1
     }
 
     /// The values at `x` in [0, 1] of the polynomials that are 1 at one node and 0 at the others.
-    pub fn basis(&self, x: f64, out: &mut [f64]) {
+    pub(super) fn basis(&self, x: f64, out: &mut [f64]) {
         let nodes = &gauss::rule(self.order).nodes;
         let mut sum = 0.0;
         for ((value, node), weight) in out.iter_mut().zip(nodes).zip(&self.weights) {
@@ -85,7 +85,7 @@ impl Panels {
     }
 
     /// The first node of the panel of an angle, and the factors of its nodes.
-    pub fn locate(&self, theta: f64) -> (usize, Vec<f64>) {
+    pub(super) fn locate(&self, theta: f64) -> (usize, Vec<f64>) {
         let panel = self.edges.iter().skip(1).take(self.count() - 1).filter(|e| **e <= theta).count();
         let (a, b) = (self.edges[panel], self.edges[panel + 1]);
         let mut factors = vec![0.0; self.order];
