@@ -73,9 +73,9 @@ pub static INFO: TableInfo = TableInfo {
     .also(&["r"])],
     laws: &["finite", "range"],
     axes: default_axes,
-    notes: "Unit depth, density and albedo, black ground. The authors' table stores zeros for a and b below R = 3e-6; here they are fitted down to R = 1e-8, \
-        and below that to light that was scattered once. Along the normal the lobe is round. Errors are those of the best lobe: how well it fits is in sheen.l3 and, as \
-        largest and mean, in every file. Each roughness is solved once, so rows cost more than columns.",
+    notes: "Unit depth, density and albedo, black ground. The authors' table stores zeros for a and b below R = 3e-6; here they are \
+        fitted down to R = 1e-7, and below that to light that was scattered once. Along the normal the lobe is round. Errors are those of \
+        the best lobe: how well it fits is in the channel sheen.l3. Each roughness is a layer that is solved once, for all views.",
     bind,
 };
 
@@ -95,7 +95,7 @@ const LEVELS: [(usize, usize, usize); 6] =
     [(4, 5, 6), (5, 7, 8), (6, 10, 10), (7, 14, 12), (8, 20, 14), (10, 24, 16)];
 
 /// Where less is reflected, a and b are those of single scattering.
-const DARK: f64 = 1e-8;
+const DARK: f64 = 1e-7;
 
 /// Where the search for the lobe starts, as a and b.
 const STARTS: [[f64; 2]; 3] = [[0.7, -0.02], [0.25, -0.1], [0.08, -0.03]];
