@@ -61,7 +61,7 @@ pub static INFO: TableInfo = TableInfo {
             ],
         },
     ],
-    mix: Mix::Free(&[]),
+    mix: Mix::Layouts,
     model: ModelUse::None,
     params: &[Param::number(
         "roughness",
