@@ -63,14 +63,7 @@ pub static INFO: TableInfo = TableInfo {
     ],
     mix: Mix::Layouts,
     model: ModelUse::None,
-    params: &[Param::number(
-        "roughness",
-        "r",
-        "roughness of the fibres, sigma = r^2",
-        RANGE,
-        Preset::Value(0.5),
-    )
-    .also(&["r"])],
+    params: &[Param::number("r", "r", "roughness of the fibres, sigma = r^2", RANGE, Preset::Value(0.5))],
     laws: &["finite", "range"],
     axes: default_axes,
     notes: "Unit depth, density and albedo, black ground. The authors' table stores zeros for a and b below R = 3e-6; here they are \
@@ -139,7 +132,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     Ok(Box::new(Sheen {
         mu: spec.coordinate("mu")?,
         roughness: spec.axis("r"),
-        fixed: spec.params.number("roughness"),
+        fixed: spec.params.number("r"),
         channels,
         fits,
         solved: Mutex::default(),
@@ -222,7 +215,7 @@ impl Sheen {
             return Ok(r * r);
         }
         let [min, max] = RANGE;
-        Err(ParamError::Range { model: INFO.id, key: "roughness", got: r, min, max }.into())
+        Err(ParamError::Range { model: INFO.id, key: "r", got: r, min, max }.into())
     }
 
     /// The texel at one level; the lobe of the level before is where the search starts.
