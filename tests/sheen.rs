@@ -241,16 +241,11 @@ fn estimates_are_honest() {
         for mu in [0.01, 0.04, 0.21, 0.35, 0.77, 0.97] {
             let coarse = bound.baker.texel(&[mu, r], 1.0).unwrap();
             let fine = bound.baker.texel(&[mu, r], 1e-6).unwrap();
-            for c in 0..ids.len() {
-                let off = (coarse.value[c] - fine.value[c]).abs();
+            for (c, id) in ids.iter().enumerate() {
+                let (off, told) = ((coarse.value[c] - fine.value[c]).abs(), coarse.error[c]);
                 all += 1;
-                beyond += i32::from(off > coarse.error[c] + 1e-7);
-                assert!(
-                    off <= 3.0 * coarse.error[c] + 1e-6,
-                    "{} at {mu}, {r}: {off:e} {:e}",
-                    ids[c],
-                    coarse.error[c]
-                );
+                beyond += i32::from(off > told + 1e-7);
+                assert!(off <= 3.0 * told + 1e-6, "{id} at {mu}, {r}: {off:e} {told:e}");
             }
         }
     }

@@ -255,17 +255,16 @@ fn sheen() {
         for y in 0..32 {
             // the authors leave a and b out where R < 3e-6
             for x in (first..32).filter(|x| shipped.texel(*x, y)[2] >= 3e-6) {
-                for c in 0..3 {
-                    let off = (shipped.texel(x, y)[c] - baked.texel(x, y)[c]).abs();
-                    largest[c] = largest[c].max(off);
-                    sum[c] += off;
+                for (c, (s, b)) in shipped.texel(x, y).iter().zip(baked.texel(x, y)).enumerate() {
+                    largest[c] = largest[c].max((s - b).abs());
+                    sum[c] += (s - b).abs();
                 }
                 count += 1.0;
             }
         }
         println!("sheen from r = {first} / 31: largest {largest:.4?}, mean {:.5?}", sum.map(|s| s / count));
-        for c in 0..3 {
-            assert!(largest[c] <= bounds[c], "component {c} from r = {first} / 31: {}", largest[c]);
+        for (c, (off, bound)) in largest.iter().zip(bounds).enumerate() {
+            assert!(*off <= bound, "component {c} from r = {first} / 31: {off}");
         }
     }
     let cycles = npy(&dir.join("cycles/sheen_ltc.npy"));
@@ -302,8 +301,8 @@ fn texels_of_sheen() {
                 "babylon" => [(a - 0.005) / 0.875, (b + 0.18) / 0.182, reflectance / 0.75],
                 _ => [a, b, reflectance],
             };
-            for c in 0..3 {
-                assert!((e.value[c] - wanted[c]).abs() < 2e-3, "{id}, channel {c}: {:?}", e.value);
+            for (c, (value, wanted)) in e.value.iter().zip(wanted).enumerate() {
+                assert!((value - wanted).abs() < 2e-3, "{id}, channel {c}: {:?}", e.value);
             }
         }
     }
