@@ -96,6 +96,8 @@ cites! {
     HEITZ_DEON_2014 = "HeitzDeon2014", "Heitz, d'Eon: Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals, CGF 33(4)", 2014, "https://doi.org/10.1111/cgf.12417";
     /// Henyey and Greenstein, diffuse radiation in the galaxy.
     HENYEY_GREENSTEIN_1941 = "HenyeyGreenstein1941", "Henyey, Greenstein: Diffuse Radiation in the Galaxy, Astrophysical Journal 93", 1941, "https://doi.org/10.1086/144246";
+    /// Hestenes, singular values by rotations from one side.
+    HESTENES_1958 = "Hestenes1958", "Hestenes: Inversion of Matrices by Biorthogonalization and Related Results, Journal of SIAM 6(1)", 1958, "https://doi.org/10.1137/0106005";
     /// Hill, energy compensation explained.
     HILL_2018 = "Hill2018", "Hill: A Multi-Faceted Exploration, part 2", 2018, "https://blog.selfshadow.com/2018/06/04/multi-faceted-part-2/";
     /// Hoffman, Schlick's approximation reconsidered for metals.

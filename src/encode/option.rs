@@ -17,6 +17,8 @@ pub enum FileOption {
     Layers,
     /// `parts`: slices along a third axis are parts of the file, not stacked below each other.
     Parts,
+    /// `planar`: all texels of one channel, then those of the next, not the channels of each texel together.
+    Planar,
     /// `tiled`: tiles of 64 x 64 pixels instead of scan lines.
     Tiled,
     /// `untagged`: nothing is said of the colour space.
@@ -32,6 +34,7 @@ pub static FILE_OPTIONS: &[FileOption] = &[
     FileOption::FillOne,
     FileOption::Layers,
     FileOption::Parts,
+    FileOption::Planar,
     FileOption::Tiled,
     FileOption::Untagged,
     FileOption::Zstd,
@@ -47,6 +50,7 @@ impl FileOption {
             FileOption::FillOne => "fill-one",
             FileOption::Layers => "layers",
             FileOption::Parts => "parts",
+            FileOption::Planar => "planar",
             FileOption::Tiled => "tiled",
             FileOption::Untagged => "untagged",
             FileOption::Zstd => "zstd",
@@ -62,6 +66,7 @@ impl FileOption {
             FileOption::FillOne => "components without channel are 1",
             FileOption::Layers => "a third axis makes the layers of an array, not a volume",
             FileOption::Parts => "a third axis makes parts of the file, not slices below each other",
+            FileOption::Planar => "one channel after another, not interleaved",
             FileOption::Tiled => "tiles of 64 x 64 pixels",
             FileOption::Untagged => "no gamma chunk, by which browsers would convert the numbers",
             FileOption::Zstd => "supercompressed with Zstandard, level 19",

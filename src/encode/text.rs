@@ -1,4 +1,5 @@
-//! Bare numbers as text: channels interleaved, axis 0 fastest, commas between, none behind the last one.
+//! Bare numbers as text: channels interleaved (`+planar`: one after another), axis 0 fastest, commas between, none behind
+//! the last one.
 //!
 //! `half` is written as the bits of each number, `0x3c00`, as arrays of 16-bit integers want it; `float` and `double` in
 //! the fewest digits that read back to the same bits, `0.25`. Lines hold eight numbers.
@@ -6,7 +7,7 @@
 //! Recipes put text round them: `before = "static const float table[] = {\n"`, `after = "};\n"`. What they make of it is a
 //! source file of an engine; `manifest.json` tells the rest.
 
-use super::{EncodeError, EncodeInput, Encoder, Storage};
+use super::{EncodeError, EncodeInput, Encoder, FileOption, Storage};
 use half::f16;
 
 /// The container. See the module.
@@ -33,6 +34,10 @@ impl Encoder for Text {
         &[Storage::Half, Storage::Float, Storage::Double]
     }
 
+    fn options(&self) -> &'static [FileOption] {
+        &[FileOption::Planar]
+    }
+
     fn most_channels(&self) -> usize {
         64
     }
@@ -45,7 +50,14 @@ impl Encoder for Text {
         input.check(self)?;
         let line =
             |line: &[f64]| line.iter().map(|v| number(*v, input.storage)).collect::<Vec<String>>().join(", ");
-        let lines: Vec<String> = input.values.chunks(IN_A_LINE).map(line).collect();
+        let count = input.channels.len();
+        let lines: Vec<String> = if input.options.contains(&FileOption::Planar) {
+            let plane = |c: usize| input.values.iter().skip(c).step_by(count.max(1)).copied();
+            let planes: Vec<f64> = (0..count).flat_map(plane).collect();
+            planes.chunks(IN_A_LINE).map(line).collect()
+        } else {
+            input.values.chunks(IN_A_LINE).map(line).collect()
+        };
         Ok(lines.join(",\n").into_bytes())
     }
 }

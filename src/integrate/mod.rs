@@ -20,6 +20,7 @@ pub mod ladder;
 pub mod line;
 pub mod lobe;
 pub mod nodes;
+pub mod slab;
 pub mod sobol;
 pub mod view;
 

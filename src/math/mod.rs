@@ -9,4 +9,5 @@ pub mod nearest;
 pub mod root;
 pub mod simplex;
 pub mod special;
+pub mod square;
 pub mod sum;

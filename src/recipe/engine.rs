@@ -149,6 +149,11 @@ pub static ENGINES: &[Engine] = &[
                 "the base64 text of the OpenPBR BRDF in Misc/brdfTextureTools.js",
                 "(mu, roughness), expanded from RGBD; (F90 - F0) r + F0 g, b / 16 of the tint at 82 degrees"
             ),
+            file(
+                "babylon-fuzz-brdf",
+                "the base64 text of the fuzz BRDF in Misc/brdfTextureTools.js",
+                "(roughness, mu); A = 0.005 + 0.875 r, B = -0.18 + 0.182 g, R = 0.75 b"
+            ),
         ]
     ),
     engine!(
@@ -218,7 +223,18 @@ pub static ENGINES: &[Engine] = &[
                 [2.942e-4, 1.572e-4],
                 [2.942e-4, 1.716e-4]
             ),
+            file("cycles-sheen-ltc", "table_sheen_ltc in src/scene/shader.tables", CORNERS),
         ]
+    ),
+    engine!(
+        "ltc-sheen",
+        "Sheen of Zeltner, Burley and Chiang",
+        "tizian/ltc-sheen 92624114, fitting/python",
+        &[file(
+            "ltc-sheen-volume",
+            "fitting/python/data/ltc_table_sheen_volume.npy",
+            "[mu][roughness], both at i / 31, no less than 0.01; A, B, R"
+        )]
     ),
     engine!(
         "unity-hdrp",

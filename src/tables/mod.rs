@@ -33,6 +33,7 @@ pub mod phase_sampling;
 pub mod preintegrated_skin;
 pub mod profile;
 pub mod selection;
+pub mod sheen_ltc;
 pub mod sheen_scaling;
 mod sides;
 pub mod skin_transmittance;
@@ -59,6 +60,7 @@ pub static TABLES: &[&TableInfo] = &[
     &glass_compensation::INFO,
     &generalised_schlick::INFO,
     &sheen_scaling::INFO,
+    &sheen_ltc::INFO,
     &fresnel_dielectric::INFO,
     &fresnel_conductor::INFO,
     &fresnel_schlick::INFO,

@@ -195,6 +195,47 @@ fn difference(a: &Fit, b: &Fit) -> FitError {
     }
 }
 
+/// The sheared lobe that is nearest to a density on nodes `(direction, density, weight)`, whatever measure the weights are of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sheared {
+    /// a of `[[a, 0, b], [0, a, 0], [0, 0, 1]]`.
+    pub a: f64,
+    /// b of it.
+    pub b: f64,
+    /// `(sum w |p - D|^3 / sum w p^3)^(1/3)`.
+    pub l3: f64,
+    /// Evaluations of the lobe.
+    pub evaluations: u32,
+}
+
+/// The nearest sheared lobe, the best of those found from `starts`, pairs of a and b; b stays 0 for `round` lobes.
+///
+/// `None` without starts.
+#[must_use]
+pub fn nearest_sheared(
+    nodes: impl Iterator<Item = (glam::DVec3, f64, f64)>,
+    starts: &[[f64; 2]],
+    round: bool,
+) -> Option<Sheared> {
+    let mut slices = Slices::default();
+    let mut cube = 0.0;
+    for (w, lobe, weight) in nodes {
+        cube += weight * lobe * lobe * lobe;
+        slices.push(&target::Node { w, lobe, weight });
+    }
+    slices.pad();
+    let family = if round { Family::Round } else { Family::Sheared };
+    let search = |&[a, b]: &[f64; 2]| {
+        let start = Inverse { m11: a, m13: b, m22: a, m31: 0.0, m33: 1.0 };
+        newton::minimise(&slices, family.nearest(&start), family)
+    };
+    let found: Vec<Optimum> = starts.iter().map(search).collect();
+    let evaluations = found.iter().fold(0u32, |sum, f| sum.saturating_add(f.evaluations));
+    let best = found.iter().min_by(|p, q| p.at.value.total_cmp(&q.at.value))?;
+    let (a, b) = (best.inverse.m22 / best.inverse.m33, best.inverse.m13 / best.inverse.m33);
+    Some(Sheared { a, b, l3: libm::cbrt(best.at.value / cube), evaluations })
+}
+
 /// The errors of a given matrix at a view, at a level of the charts (8 is good to about 1e-4 of them).
 ///
 /// # Errors
