@@ -382,12 +382,10 @@ impl EncodeInput<'_> {
         let Some(kind) = kind else { return Ok(()) };
         let all = kind.channels().max(n);
         let range = |c: usize| self.channels.get(c).map_or([0.0, 1.0], |channel| channel.range);
-        let decoded = self.storage.expand(self.blocks, extent, all, range);
+        let got = self.storage.expand(self.blocks, extent, all, range);
         let value = |i: usize| if i % all < n { self.values[i / all * n + i % all] } else { 0.0 };
-        match decoded.iter().enumerate().position(|(i, v)| v.to_bits() != value(i).to_bits()) {
-            Some(i) => Err(self.not_quantised(i / all, (i % all).min(n - 1))),
-            None => Ok(()),
-        }
+        let wrong = got.iter().enumerate().position(|(i, v)| v.to_bits() != value(i).to_bits());
+        wrong.map_or(Ok(()), |i| Err(self.not_quantised(i / all, (i % all).min(n - 1))))
     }
 
     fn not_quantised(&self, texel: usize, c: usize) -> EncodeError {

@@ -257,10 +257,11 @@ impl Storage {
 
     /// Integer code of a value, as f64: `round((value - lo) / (hi - lo) top)`, ties to even. Floats have none.
     pub(crate) fn code(self, value: f64, range: [f64; 2]) -> Result<f64, QuantiseError> {
-        Ok(self.position(value, range)?.round_ties_even())
+        let position = self.position(value, range)?;
+        Ok(if self.is_bounded() { position.round_ties_even() } else { position })
     }
 
-    /// The code before it is rounded.
+    /// The code before it is rounded; of floats the number itself.
     pub(super) fn position(self, value: f64, range: [f64; 2]) -> Result<f64, QuantiseError> {
         let [lo, hi] = range;
         let storage = self.id();
