@@ -3,7 +3,7 @@
 //! A block holds one or two pairs of endpoints and an index a texel. With two pairs a number of 5 bits says which texel
 //! belongs to which pair. The texel is the interpolation between its endpoints *in the bits of a half*, which grow as
 //! the logarithm does. Fourteen modes share the bits between precision of the first endpoint and length of the
-//! differences that the others are from it. The index of the first texel of each pair lacks its highest bit.
+//! differences that the others are from it. The index of one texel of each pair lacks its highest bit.
 //!
 //! The unsigned variant has halfs from 0 to 65504, the signed one -65504 to 65504. Neither has infinities or NaN; only
 //! a foreign signed block can hold -infinity, by an endpoint of -32768.
@@ -296,12 +296,11 @@ impl Block {
             let bit = i32::from(bits >> (mode.code_bits + i) & 1 == 1);
             endpoints[slot / 3][slot % 3] |= bit << (what % 16);
         }
-        for end in 0..2 * mode.subsets {
-            for c in 0..3 {
-                let first = endpoints[0][c];
-                let v = &mut endpoints[end][c];
+        let first = endpoints[0];
+        for (end, ends) in endpoints.iter_mut().enumerate().take(2 * mode.subsets) {
+            for (c, v) in ends.iter_mut().enumerate() {
                 if end > 0 && mode.differences {
-                    *v = (first + extend(*v, mode.rest[c])) & ((1 << mode.base) - 1);
+                    *v = (first[c] + extend(*v, mode.rest[c])) & ((1 << mode.base) - 1);
                 }
                 if signed {
                     *v = extend(*v, mode.base);

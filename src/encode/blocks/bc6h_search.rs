@@ -70,8 +70,8 @@ impl Target<'_> {
         let mut endpoints: Endpoints = [[0; 3]; 4];
         for (pair, line) in lines.iter().enumerate() {
             for (end, wide) in line.0.iter().enumerate() {
-                for c in 0..self.channels {
-                    endpoints[2 * pair + end][c] = round(wide[c], mode, self.signed);
+                for (c, v) in wide.iter().enumerate().take(self.channels) {
+                    endpoints[2 * pair + end][c] = round(*v, mode, self.signed);
                 }
             }
         }
