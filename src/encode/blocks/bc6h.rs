@@ -246,7 +246,7 @@ pub(super) fn mix(a: i32, b: i32, weight: i32) -> i32 {
 /// The half that a wide integer stands for, as f64.
 pub(super) fn value(wide: i32, signed: bool) -> f64 {
     let magnitude = u64::from(wide.unsigned_abs());
-    let bits = if signed { magnitude * 31 >> 5 } else { magnitude * 31 >> 6 };
+    let bits = (magnitude * 31) >> if signed { 5 } else { 6 };
     // the fields of a half in those of an f64, whose exponent is then 1008 too small
     let scale = f64::from_bits((1008 + 1023) << 52);
     let v = if bits == 0x7c00 { f64::INFINITY } else { f64::from_bits(bits << 42) * scale };
