@@ -39,7 +39,7 @@ fn any_block_decodes_as_elsewhere() {
             block[8..].copy_from_slice(&next().to_le_bytes());
             if channels == 3 {
                 // all modes alike, the four reserved ones included
-                block[0] = block[0] & !31 | i % 32;
+                block[0] = (block[0] & !31) | (i % 32);
             }
         }
         let image = read_bytes(&file).unwrap();
@@ -79,7 +79,7 @@ fn no_ramp_is_better() {
     let mut next = random();
     for case in 0..24u32 {
         let [low, high] = [(0.0, 1.0), (0.0, 0.02), (0.97, 1.0), (0.4, 0.47)][case as usize % 4].into();
-        let spread = |x: f64| if case % 3 == 0 { x * x * x } else { x };
+        let spread = |x: f64| if case.is_multiple_of(3) { x * x * x } else { x };
         let texels: Vec<f64> = (0..16)
             .map(|_| low + (high - low) * spread((next() >> 11) as f64 / (1u64 << 53) as f64))
             .collect();
@@ -120,7 +120,8 @@ fn a_bc6h_block_is_at_least_as_good_as_a_plain_one() {
         let smooth = |i: usize| {
             let (x, y) = ((i / 2 % 4) as f64, (i / 8) as f64);
             let line = a + (b - a) * (x + 0.5 * y) / 4.5;
-            (0.1 + 0.8 * if i % 2 == 0 { line } else { (1.0 - line) * (0.5 + 0.5 * bend * x / 3.0) }).abs()
+            (0.1 + 0.8 * if i.is_multiple_of(2) { line } else { (1.0 - line) * (0.5 + 0.5 * bend * x / 3.0) })
+                .abs()
         };
         let t = with(&[4, 4], 2, smooth);
         let stored = quantise_table(&t, Storage::Bc6h).unwrap();
@@ -152,7 +153,8 @@ fn edges_slices_and_signs() {
     for storage in [Storage::Bc4, Storage::Bc5, Storage::Bc6h, Storage::Bc6hSigned] {
         for lengths in [&[1][..], &[5], &[4, 4], &[6, 9], &[6, 5, 3], &[3, 2, 2, 2]] {
             for channels in 1..=storage.most_channels().unwrap() {
-                let sign = |i: usize| if storage == Storage::Bc6hSigned && i % 3 == 0 { -1.0 } else { 1.0 };
+                let sign =
+                    |i: usize| if storage == Storage::Bc6hSigned && i.is_multiple_of(3) { -1.0 } else { 1.0 };
                 let t = with(lengths, channels, |i| sign(i) * (i as f64 * 0.37 + 0.2).fract());
                 for container in ["dds", "ktx2"] {
                     let (bytes, values) = written(&t, container, storage, &[]).unwrap();
@@ -172,7 +174,8 @@ fn edges_slices_and_signs() {
 
 #[test]
 fn ranges_are_those_of_the_channels() {
-    let mut t = with(&[8, 8], 2, |i| if i % 2 == 0 { -3.0 + 6.0 * i as f64 / 127.0 } else { 1.0 + 1e-9 });
+    let mut t =
+        with(&[8, 8], 2, |i| if i.is_multiple_of(2) { -3.0 + 6.0 * i as f64 / 127.0 } else { 1.0 + 1e-9 });
     (t.channels[0].range, t.channels[1].range) = ([-3.0, 3.0], [0.0, 1.0]);
     // within its own error of the end: the end
     t.errors = vec![2e-9; 128];
