@@ -11,6 +11,8 @@
     reason = "tests"
 )]
 
+#[path = "containers/blocks.rs"]
+mod blocks;
 #[path = "containers/code.rs"]
 mod code;
 #[path = "containers/dds_file.rs"]

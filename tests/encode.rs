@@ -104,6 +104,9 @@ fn default_tolerances_are_half_a_step_below_one() {
     assert_eq!(steps[..3], [1.0 / 4096.0, 1.0 / 33554432.0, 1e-9]);
     assert_eq!(steps[3..6], codes);
     assert_eq!(steps[6..9], [1.0 / 256.0, 1.0 / 1024.0, 1.0 / 512.0]);
+    // blocks: the finest ramp of BC4 and BC5 has sevenths of 1/255, halfs their bits
+    assert_eq!(steps[10..12], [0.5 / 1785.0; 2]);
+    assert_eq!(steps[12..14], [1.0 / 4096.0; 2]);
     for storage in STORAGES {
         if !matches!(storage, Storage::Double | Storage::R11g11b10 | Storage::Rgbd) {
             assert_eq!(storage.ulp(0.75, UNIT), 2.0 * storage.default_tolerance());
@@ -188,6 +191,7 @@ fn rows_run_down_and_slices_are_stacked() {
             grid: &grid,
             channels: &channels,
             values: &values,
+            blocks: &[],
             errors: &[],
             storage: Storage::Half,
             options: &[],
@@ -221,6 +225,7 @@ fn metadata_is_utf8_and_alone() {
             grid: &t.grid,
             channels: &t.channels,
             values: &values,
+            blocks: &[],
             errors: &[],
             storage,
             options: &[],
@@ -269,6 +274,7 @@ fn containers_refuse_what_they_cannot_hold() {
         grid: &t.grid,
         channels: &t.channels[..1],
         values: &values[..35],
+        blocks: &[],
         errors: &[],
         storage: Storage::Unorm16,
         options: &[],

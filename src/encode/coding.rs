@@ -20,8 +20,8 @@ use std::sync::LazyLock;
 pub(crate) enum Coding {
     /// Binary floating point with `digits` significant bits, normal from `2^least` on, up to `largest`.
     Binary { digits: i32, least: i32, largest: f64, signed: bool },
-    /// Integers 0 ..= `top` spread over the range of the channel.
-    Unorm { top: f64 },
+    /// Integers 0 ..= `top` spread over the range of the channel; neighbours are `step` apart where they are closest.
+    Unorm { top: f64, step: f64 },
     /// Mantissas 0 ..= `top` and one exponent of the texel in `exponents`.
     Shared(Shared),
     /// See the module.
@@ -130,7 +130,7 @@ impl Coding {
     /// The number that a unorm code stands for; of other codings the number itself.
     pub(crate) fn decode(self, code: f64, range: [f64; 2]) -> f64 {
         match self {
-            Coding::Unorm { top } => range[0] + code / top * (range[1] - range[0]),
+            Coding::Unorm { top, .. } => range[0] + code / top * (range[1] - range[0]),
             _ => code,
         }
     }
@@ -142,7 +142,7 @@ impl Coding {
             Coding::Binary { digits, least, largest, .. } => {
                 power_of_two((exponent(value).clamp(least, exponent(largest)) - digits + 1).max(-1022))
             }
-            Coding::Unorm { top } => (range[1] - range[0]) / top,
+            Coding::Unorm { top, step } => step * (range[1] - range[0]) / top,
             Coding::Shared(shared) => {
                 let [least, most] = shared.exponents;
                 power_of_two((exponent(value) - exponent(shared.top)).clamp(least, most))

@@ -1,4 +1,4 @@
-//! DDS with the DX10 header: 2D, volume or array; half, float, unorm, packed words.
+//! DDS with the DX10 header: 2D, volume or array; half, float, unorm, packed words, blocks.
 //!
 //! | storage | DXGI format (one, two, four components) |
 //! |---|---|
@@ -9,6 +9,8 @@
 //! | `rgb10a2` | R10G10B10A2 UNORM |
 //! | `r11g11b10` | R11G11B10 FLOAT |
 //! | `rgb9e5` | R9G9B9E5 SHAREDEXP |
+//! | `bc4`, `bc5` | BC4, BC5 UNORM (one, two channels) |
+//! | `bc6h`, `bc6h-signed` | BC6H UF16, SF16 (up to three) |
 //!
 //! DXGI has no three components of 8 or 16 bits: such a table gets a fourth, which is 1 (see the fill options). A table
 //! with three axes is a volume, with option `layers` an array; one with four is always an array.
@@ -29,8 +31,11 @@ pub(super) const MAGIC: &[u8] = b"DDS ";
 /// Magic, header, DX10 header.
 pub(super) const HEAD: usize = 4 + 124 + 20;
 
-/// `DDSD_CAPS | DDSD_HEIGHT | DDSD_WIDTH | DDSD_PITCH | DDSD_PIXELFORMAT`.
-const FLAGS: u32 = 0x1 | 0x2 | 0x4 | 0x8 | 0x1000;
+/// `DDSD_CAPS | DDSD_HEIGHT | DDSD_WIDTH | DDSD_PIXELFORMAT`.
+const FLAGS: u32 = 0x1 | 0x2 | 0x4 | 0x1000;
+/// `DDSD_PITCH`: bytes of a row. `DDSD_LINEARSIZE`: bytes of a slice, of formats made of blocks.
+const FLAG_PITCH: u32 = 0x8;
+const FLAG_SIZE: u32 = 0x8_0000;
 const FLAG_DEPTH: u32 = 0x80_0000;
 /// `DDPF_FOURCC`.
 const FOURCC: u32 = 0x4;
@@ -95,12 +100,14 @@ impl Encoder for Dds {
         let depth = if volume { slices } else { 1 };
         let layers = shape.layers().unwrap_or(1);
         let size = EncodeError::Size { format: "dds", width, height, limit: 1 << 26 };
-        let pitch = width * texels::size(input.storage, components);
+        let block = input.storage.is_block();
+        let line = [width, if block { height } else { 1 }, 1];
+        let pitch = texels::bytes(input.storage, components, line).unwrap_or(usize::MAX);
         let words = [pitch, width, height, depth, layers].map(u32::try_from);
         let [Ok(pitch), Ok(width), Ok(height), Ok(depth), Ok(layers)] = words else { return Err(size) };
         let several = depth > 1 || layers > 1;
         let mut out = MAGIC.to_vec();
-        let flags = FLAGS | if volume { FLAG_DEPTH } else { 0 };
+        let flags = FLAGS | if volume { FLAG_DEPTH } else { 0 } | if block { FLAG_SIZE } else { FLAG_PITCH };
         for n in [124, flags, height, width, pitch, depth, 1] {
             out.extend(n.to_le_bytes());
         }
@@ -146,6 +153,10 @@ fn dxgi(storage: Storage, components: usize) -> u32 {
         Storage::Rgb10a2 => 24,
         Storage::R11g11b10 => 26,
         Storage::Rgb9e5 => 67,
+        Storage::Bc4 => 80,
+        Storage::Bc5 => 83,
+        Storage::Bc6h => 95,
+        Storage::Bc6hSigned => 96,
         Storage::Double | Storage::Rgbe => 0,
     }
 }

@@ -29,12 +29,17 @@ pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
     if h.levels > 1 && h.slices > 1 {
         return Err(fault(format!("{} levels of {} slices are not supported", h.levels, h.slices)));
     }
-    let size = h.width * height * texels::size(h.storage, h.components);
-    let data = bytes.get(h.start..h.start + size).ok_or_else(|| {
+    let extent = [h.width, h.height, h.slices];
+    let size = texels::bytes(h.storage, h.components, extent).ok_or(ReadError::Samples {
+        format: FORMAT,
+        width: h.width,
+        height,
+    })?;
+    let data = bytes.get(h.start..h.start.saturating_add(size)).ok_or_else(|| {
         let got = bytes.len().saturating_sub(h.start);
         fault(format!("the file has {got} bytes of pixels, its header tells of {size}"))
     })?;
-    let channels = texels::finish(texels::unpack(data, h.storage, h.components), None);
+    let channels = texels::finish(texels::unpack(data, h.storage, h.components, extent), None);
     Ok(Image { format: FORMAT, width: h.width, height, channels, provenance: None })
 }
 

@@ -1,13 +1,18 @@
 //! The basic data format descriptor of KTX2: what the bits of a texel mean.
 //!
 //! Source: Khronos Data Format Specification 1.3, section 5 (basic descriptor block), and KTX 2.0 section 3.7. Version 2
-//! of the block, colour model RGBSDA, linear transfer, one texel a block. The primaries are unspecified: a table has no
-//! colours, and loaders then leave its numbers alone.
+//! of the block, colour model RGBSDA with one texel a block, or one of the BC models with 4 x 4; linear transfer. The
+//! primaries are unspecified: a table has no colours, and loaders then leave its numbers alone.
 
 use super::Storage;
+use super::blocks::Kind;
 
 /// `KHR_DF_MODEL_RGBSDA`.
 const MODEL_RGBSDA: u8 = 1;
+/// `KHR_DF_MODEL_BC4`, `_BC5`, `_BC6H`.
+const MODEL_BC4: u8 = 131;
+const MODEL_BC5: u8 = 132;
+const MODEL_BC6H: u8 = 133;
 /// `KHR_DF_TRANSFER_LINEAR`.
 const LINEAR: u8 = 1;
 /// Qualifier bits of a sample, above its channel id.
@@ -36,9 +41,16 @@ pub(super) fn descriptor(storage: Storage, components: usize) -> Vec<u8> {
     // vendor Khronos, type basic
     out.extend(0u32.to_le_bytes());
     out.extend((2 | word(block) << 16).to_le_bytes());
-    out.extend([MODEL_RGBSDA, 0, LINEAR, 0]);
-    // one texel a block, stored as the length less one
-    out.extend([0; 4]);
+    let model = match Kind::of(storage) {
+        None => MODEL_RGBSDA,
+        Some(Kind::Bc6h { .. }) => MODEL_BC6H,
+        Some(Kind::Ramps(1)) => MODEL_BC4,
+        Some(Kind::Ramps(_)) => MODEL_BC5,
+    };
+    out.extend([model, 0, LINEAR, 0]);
+    // sides of a block of texels, less one
+    let side = if storage.is_block() { 3 } else { 0 };
+    out.extend([side, side, 0, 0]);
     out.extend([bytes, 0, 0, 0, 0, 0, 0, 0]);
     for s in samples {
         out.extend(s.offset.to_le_bytes());
@@ -70,6 +82,13 @@ fn samples(storage: Storage, components: usize) -> Vec<Sample> {
         Storage::Float | Storage::Double => same(32, FLOAT | SIGNED, minus_one, one),
         Storage::Unorm8 | Storage::Rgbd | Storage::Rgbe => same(8, 0, 0, 0xff),
         Storage::Unorm16 => same(16, 0, 0, 0xffff),
+        // one sample is all the bits of a channel, or of all of them
+        Storage::Bc4 | Storage::Bc5 => same(64, 0, 0, u32::MAX),
+        Storage::Bc6h => vec![Sample { offset: 0, bits: 128, channel: FLOAT, lower: 0, upper: one }],
+        Storage::Bc6hSigned => {
+            let channel = FLOAT | SIGNED;
+            vec![Sample { offset: 0, bits: 128, channel, lower: minus_one, upper: one }]
+        }
         Storage::Rgb10a2 => {
             let mut samples: Vec<Sample> = same(10, 0, 0, 0x3ff);
             if let Some(alpha) = samples.get_mut(3) {

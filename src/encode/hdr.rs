@@ -122,7 +122,8 @@ fn read(bytes: &[u8]) -> Result<Image, ReadError> {
     }
     let pixels = pixels(bytes.get(used..).unwrap_or_default(), width, height)?;
     let provenance = text.map(Claim::parse);
-    let channels = texels::finish(texels::unpack(&pixels, Storage::Rgbe, 3), provenance.as_ref());
+    let channels =
+        texels::finish(texels::unpack(&pixels, Storage::Rgbe, 3, [width, height, 1]), provenance.as_ref());
     Ok(Image { format: FORMAT, width, height, channels, provenance })
 }
 

@@ -1,4 +1,4 @@
-//! KTX2: 2D, volume or array; 1 to 4 components; half, float, unorm, packed words; Zstandard if asked for.
+//! KTX2: 2D, volume or array; 1 to 4 components; half, float, unorm, packed words, blocks; Zstandard if asked for.
 //!
 //! | storage | Vulkan format |
 //! |---|---|
@@ -9,6 +9,8 @@
 //! | `rgb10a2` | A2B10G10R10 UNORM PACK32 |
 //! | `r11g11b10` | B10G11R11 UFLOAT PACK32 |
 //! | `rgb9e5` | E5B9G9R9 UFLOAT PACK32 |
+//! | `bc4`, `bc5` | BC4, BC5 UNORM BLOCK |
+//! | `bc6h`, `bc6h-signed` | BC6H UFLOAT, SFLOAT BLOCK |
 //!
 //! A table with three axes is a volume, with option `layers` an array; one with four is always an array, since nothing
 //! filters across the fourth. Few GPUs sample three components of 8 or 16 bits: `rgba` makes them four.
@@ -87,7 +89,7 @@ impl Encoder for Ktx2 {
         let keys = keys(input, &shape);
         let zstd = shape.has(FileOption::Zstd);
         let data = if zstd { compress(&pixels)? } else { pixels.clone() };
-        // data that is not supercompressed begins at a multiple of its texel and of 4
+        // data that is not supercompressed begins at a multiple of its texel, or block, and of 4
         let align = if zstd { 1 } else { lcm(texels::size(input.storage, components), 4) };
         let start = (HEAD + descriptor.len() + keys.len()).next_multiple_of(align);
         let too_large = || {
@@ -155,6 +157,10 @@ fn vk_format(storage: Storage, components: usize) -> u32 {
         Storage::Rgb10a2 => 64,
         Storage::R11g11b10 => 122,
         Storage::Rgb9e5 => 123,
+        Storage::Bc4 => 139,
+        Storage::Bc5 => 141,
+        Storage::Bc6h => 143,
+        Storage::Bc6hSigned => 144,
         Storage::Double | Storage::Rgbe => 0,
     }
 }
@@ -166,9 +172,10 @@ pub(super) fn storage(format: u32) -> Option<(Storage, usize)> {
         .find(|&(s, n)| vk_format(s, n) == format)
 }
 
-/// Bytes of the word whose byte order matters.
+/// Bytes of the word whose byte order matters; of blocks there is none.
 const fn type_size(storage: Storage) -> u32 {
     match storage {
+        _ if storage.is_block() => 1,
         Storage::Half | Storage::Unorm16 => 2,
         Storage::Unorm8 | Storage::Rgbd | Storage::Rgbe => 1,
         _ => 4,

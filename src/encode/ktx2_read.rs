@@ -23,17 +23,24 @@ pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
     }
     let width = word(bytes, 20)? as usize;
     // height, depth, layers: 0 where there is none
-    let mut height = 1usize;
-    for at in [24, 28, 32] {
-        height = height.saturating_mul((word(bytes, at)? as usize).max(1));
+    let mut sides = [1usize; 3];
+    for (side, at) in sides.iter_mut().zip([24, 28, 32]) {
+        *side = (word(bytes, at)? as usize).max(1);
     }
+    let slices = sides[1].saturating_mul(sides[2]);
+    let height = sides[0].saturating_mul(slices);
     if width == 0 {
         return Err(fault("the width is 0".to_owned()));
     }
     if width.saturating_mul(height).saturating_mul(components) > MAX_SAMPLES {
         return Err(ReadError::Samples { format: FORMAT, width, height });
     }
-    let size = width * height * texels::size(storage, components);
+    let extent = [width, sides[0], slices];
+    let size = texels::bytes(storage, components, extent).ok_or(ReadError::Samples {
+        format: FORMAT,
+        width,
+        height,
+    })?;
     let [start, length] = [80, 88].map(|at| long(bytes, at));
     let level = part(bytes, start?, length?)?;
     let unpacked = match word(bytes, 44)? {
@@ -50,7 +57,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
         let value = value.strip_suffix(&[0]).unwrap_or(value);
         Claim::parse(String::from_utf8_lossy(value).into_owned())
     });
-    let channels = texels::finish(texels::unpack(data, storage, components), provenance.as_ref());
+    let channels = texels::finish(texels::unpack(data, storage, components, extent), provenance.as_ref());
     Ok(Image { format: FORMAT, width, height, channels, provenance })
 }
 

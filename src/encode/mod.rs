@@ -1,7 +1,8 @@
 //! Tables to files and back: storages (bits of a number), containers (one file each), readers, comparison.
 //!
 //! A table is first rounded by [`quantise_table`]; an [`Encoder`] then only moves the rounded numbers into bytes, in
-//! memory, and refuses a number that it would have to change. [`atomic::write_all`] puts finished files on disk.
+//! memory, and refuses a number that it would have to change. Storages of 4 x 4 texels cannot round one by one: their
+//! bytes are made with the rounded numbers, and the encoder refuses bytes that do not decode to them. [`atomic::write_all`] puts finished files on disk.
 //!
 //! # Picture layout
 //! Axis 0 runs along x, axis 1 along y with index 0 in the top row. A third and fourth axis stack their slices below
@@ -29,6 +30,7 @@
 //!     grid: &table.grid,
 //!     channels: &table.channels,
 //!     values: &rounded.values,
+//!     blocks: &rounded.blocks,
 //!     errors: &[],
 //!     storage: Storage::Half,
 //!     options: &[],
@@ -42,6 +44,7 @@
 //! One file, one `pub mod` line, one line in [`ENCODERS`].
 
 pub mod atomic;
+mod blocks;
 pub mod code;
 mod coding;
 pub mod csv;
@@ -61,6 +64,7 @@ pub mod npy;
 pub mod option;
 pub mod png;
 mod png_read;
+mod quantise;
 pub mod raw;
 pub mod read;
 pub mod storage;
@@ -69,8 +73,9 @@ pub mod text;
 
 pub use diff::{ImageDiff, Tolerance};
 pub use option::{FILE_OPTIONS, FileOption, Shape};
+pub use quantise::{Quantised, RangeFault, quantise_table};
 pub use read::{Image, ReadError};
-pub use storage::{Quantised, RangeFault, Storage, quantise_table};
+pub use storage::Storage;
 
 use crate::grid::{Channel, Grid};
 use std::fmt::Debug;
@@ -173,6 +178,8 @@ pub struct EncodeInput<'a> {
     pub channels: &'a [Channel],
     /// Values as rounded by [`quantise_table`], `[texel][channel]`.
     pub values: &'a [f64],
+    /// The bytes of these values, as made by [`quantise_table`], if the storage is made of blocks; empty otherwise.
+    pub blocks: &'a [u8],
     /// Estimated integration errors, `[texel][channel]`; empty if they are not known. Only CSV holds them.
     pub errors: &'a [f64],
     /// How they are stored.
@@ -250,6 +257,18 @@ pub enum EncodeError {
         texels: usize,
         /// Number of channels.
         channels: usize,
+    },
+    /// Blocks that are missing, or there without need.
+    #[error(
+        "{got} bytes of blocks for {storage}, which needs {expected}: hand over those that came with the values"
+    )]
+    Blocks {
+        /// Storage id.
+        storage: &'static str,
+        /// Bytes given.
+        got: usize,
+        /// Bytes that the texels take; 0 if the storage has no blocks.
+        expected: usize,
     },
     /// Axes that the container has no words for.
     #[error("{format} cannot hold these axes; {fault}")]
@@ -330,9 +349,13 @@ impl EncodeInput<'_> {
         self.check_values()
     }
 
-    /// Every value must be its own rounded form, bit for bit.
+    /// Every value must be its own rounded form, bit for bit, or what the blocks decode to.
     fn check_values(&self) -> Result<(), EncodeError> {
         let n = self.channels.len();
+        self.check_blocks()?;
+        if self.storage.is_block() {
+            return Ok(());
+        }
         let mut rounded = vec![0.0; n];
         for (t, texel) in self.values.chunks_exact(n).enumerate() {
             rounded.copy_from_slice(texel);
@@ -341,14 +364,36 @@ impl EncodeInput<'_> {
                 Err((c, _)) => Some(c.min(n - 1)),
             };
             if let Some(c) = fault {
-                return Err(EncodeError::NotQuantised {
-                    texel: t,
-                    channel: self.channels[c].id.clone(),
-                    value: texel[c],
-                    storage: self.storage.id(),
-                });
+                return Err(self.not_quantised(t, c));
             }
         }
         Ok(())
+    }
+
+    /// Blocks must decode to the values; in channels that the table does not have, to 0.
+    fn check_blocks(&self) -> Result<(), EncodeError> {
+        let (n, extent) = (self.channels.len(), self.grid.extent());
+        let kind = blocks::Kind::of(self.storage);
+        let (got, expected) = (self.blocks.len(), kind.map_or(Some(0), |k| k.bytes(extent)));
+        if Some(got) != expected {
+            let storage = self.storage.id();
+            return Err(EncodeError::Blocks { storage, got, expected: expected.unwrap_or(usize::MAX) });
+        }
+        let Some(kind) = kind else { return Ok(()) };
+        let all = kind.channels().max(n);
+        let range = |c: usize| self.channels.get(c).map_or([0.0, 1.0], |channel| channel.range);
+        let got = self.storage.expand(self.blocks, extent, all, range);
+        let value = |i: usize| if i % all < n { self.values[i / all * n + i % all] } else { 0.0 };
+        let wrong = got.iter().enumerate().position(|(i, v)| v.to_bits() != value(i).to_bits());
+        wrong.map_or(Ok(()), |i| Err(self.not_quantised(i / all, (i % all).min(n - 1))))
+    }
+
+    fn not_quantised(&self, texel: usize, c: usize) -> EncodeError {
+        EncodeError::NotQuantised {
+            texel,
+            channel: self.channels[c].id.clone(),
+            value: self.values[texel * self.channels.len() + c],
+            storage: self.storage.id(),
+        }
     }
 }

@@ -102,7 +102,7 @@ fn read(bytes: &[u8]) -> Result<Image, ReadError> {
     if data.len() != size {
         return Err(fault(format!("{} bytes of numbers, the shape tells of {size}", data.len())));
     }
-    let mut planes = texels::unpack(data, storage, channels);
+    let mut planes = texels::unpack(data, storage, channels, [0; 3]);
     // an array has no colours
     let rename = |(c, p): (usize, &mut Plane)| p.name = format!("c{c}");
     planes.iter_mut().enumerate().for_each(rename);

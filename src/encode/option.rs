@@ -153,7 +153,8 @@ impl Shape<'_> {
         if self.has(FileOption::FillZero) && self.has(FileOption::FillOne) {
             return Err(EncodeError::Conflict { a: "fill-zero", b: "fill-one" });
         }
-        let coupled = matches!(self.storage, Storage::Rgb9e5 | Storage::Rgbe | Storage::Rgbd);
+        let coupled = matches!(self.storage, Storage::Rgb9e5 | Storage::Rgbe | Storage::Rgbd)
+            || self.storage.is_block();
         if coupled && (self.has(FileOption::FillOne) || self.has(FileOption::Rgba)) {
             let a = if self.has(FileOption::Rgba) { "rgba" } else { "fill-one" };
             return Err(EncodeError::Conflict { a, b: storage });

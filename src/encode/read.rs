@@ -84,6 +84,14 @@ pub enum Sample {
     Rgbe,
     /// 8-bit code with the divisor of its texel.
     Rgbd,
+    /// Number of a ramp of its block.
+    Bc4,
+    /// Number of a ramp of its block; the other channel has its own.
+    Bc5,
+    /// Unsigned half of its block.
+    Bc6h,
+    /// Half of its block.
+    Bc6hSigned,
 }
 
 impl Sample {
@@ -101,6 +109,10 @@ impl Sample {
             Storage::Rgb9e5 => Sample::Rgb9e5,
             Storage::Rgbe => Sample::Rgbe,
             Storage::Rgbd => Sample::Rgbd,
+            Storage::Bc4 => Sample::Bc4,
+            Storage::Bc5 => Sample::Bc5,
+            Storage::Bc6h => Sample::Bc6h,
+            Storage::Bc6hSigned => Sample::Bc6hSigned,
         }
     }
 
@@ -117,6 +129,10 @@ impl Sample {
             Sample::Rgb9e5 => Storage::Rgb9e5,
             Sample::Rgbe => Storage::Rgbe,
             Sample::Rgbd => Storage::Rgbd,
+            Sample::Bc4 => Storage::Bc4,
+            Sample::Bc5 => Storage::Bc5,
+            Sample::Bc6h => Storage::Bc6h,
+            Sample::Bc6hSigned => Storage::Bc6hSigned,
             Sample::Uint32 => return None,
         })
     }

@@ -5,11 +5,11 @@
 //! mantissa. Either way 1 + 2^-11 + 2^-52, just above a tie, becomes 1 instead of 1 + 2^-10 (`tests/encode.rs`).
 //!
 //! A new storage is one variant, one entry in [`STORAGES`] and one `Coding`. Most code each number by itself; three code
-//! the channels of a texel together ([`Storage::quantise_texel`]).
+//! the channels of a texel together ([`Storage::quantise_texel`]), and four code blocks of 4 x 4 texels together, whose
+//! bytes [`quantise_table`](super::quantise_table) makes.
 
+use super::blocks::{self, Kind};
 use super::coding::{self, Coding, RGBD_LARGEST, Shared, exponent, power_of_two};
-use crate::grid::Table;
-use crate::grid::table::{Extreme, place};
 use serde::{Deserialize, Serialize};
 
 /// How a number is stored.
@@ -39,6 +39,15 @@ pub enum Storage {
     Rgbe,
     /// Up to three 8-bit codes with a divisor, as Babylon.js expands them: `(code / 255)^2.2 / (d / 255)`, largest 255.
     Rgbd,
+    /// One channel in blocks of 4 x 4 texels, 4 bits a texel: eight or six numbers between two 8-bit codes over the range of
+    /// the channel.
+    Bc4,
+    /// Two channels, each as [`Storage::Bc4`], 8 bits a texel.
+    Bc5,
+    /// Up to three unsigned half floats in blocks of 4 x 4 texels, 8 bits a texel: numbers between two or four endpoints.
+    Bc6h,
+    /// [`Storage::Bc6h`] with signs.
+    Bc6hSigned,
 }
 
 /// Every storage.
@@ -53,6 +62,10 @@ pub static STORAGES: &[Storage] = &[
     Storage::Rgb9e5,
     Storage::Rgbe,
     Storage::Rgbd,
+    Storage::Bc4,
+    Storage::Bc5,
+    Storage::Bc6h,
+    Storage::Bc6hSigned,
 ];
 
 /// How far beyond an end of its range a unorm value may lie, as a part of the range, and how far below zero a value
@@ -137,6 +150,10 @@ impl Storage {
             Storage::Rgb9e5 => "rgb9e5",
             Storage::Rgbe => "rgbe",
             Storage::Rgbd => "rgbd",
+            Storage::Bc4 => "bc4",
+            Storage::Bc5 => "bc5",
+            Storage::Bc6h => "bc6h",
+            Storage::Bc6hSigned => "bc6h-signed",
         }
     }
 
@@ -156,6 +173,10 @@ impl Storage {
             Storage::Rgb9e5 => "9 bits each with one exponent, largest 65408, not negative, 32 bits a texel",
             Storage::Rgbe => "8 bits each with one exponent, not negative, 32 bits a texel",
             Storage::Rgbd => "(code / 255)^2.2 / (d / 255), 8 bits each and d, largest 255, not negative",
+            Storage::Bc4 => "blocks of 4 x 4 texels, one channel over its range, 4 bits a texel; lossy",
+            Storage::Bc5 => "blocks of 4 x 4 texels, two channels over their ranges, 8 bits a texel; lossy",
+            Storage::Bc6h => "blocks of 4 x 4 texels, up to three unsigned halfs, 8 bits a texel; lossy",
+            Storage::Bc6hSigned => "blocks of 4 x 4 texels, up to three halfs, 8 bits a texel; lossy",
         }
     }
 
@@ -172,21 +193,34 @@ impl Storage {
             Storage::Rgb10a2 | Storage::R11g11b10 | Storage::Rgb9e5 | Storage::Rgbe | Storage::Rgbd => {
                 Some(3)
             }
-            _ => None,
+            _ => match Kind::of(self) {
+                Some(kind) => Some(kind.channels()),
+                None => None,
+            },
         }
+    }
+
+    /// True if texels are compressed in blocks of 4 x 4 and cannot be rounded one by one.
+    #[must_use]
+    pub const fn is_block(self) -> bool {
+        Kind::of(self).is_some()
     }
 
     /// How channel number `channel` is stored.
     pub(crate) const fn coding(self, channel: usize) -> Coding {
         match self {
-            Storage::Half => Coding::Binary { digits: 11, least: -14, largest: 65504.0, signed: true },
+            Storage::Half | Storage::Bc6hSigned => {
+                Coding::Binary { digits: 11, least: -14, largest: 65504.0, signed: true }
+            }
+            Storage::Bc6h => Coding::Binary { digits: 11, least: -14, largest: 65504.0, signed: false },
             Storage::Float => {
                 Coding::Binary { digits: 24, least: -126, largest: f32::MAX as f64, signed: true }
             }
             Storage::Double => Coding::Binary { digits: 53, least: -1022, largest: f64::MAX, signed: true },
-            Storage::Unorm8 => Coding::Unorm { top: 255.0 },
-            Storage::Unorm16 => Coding::Unorm { top: 65535.0 },
-            Storage::Rgb10a2 => Coding::Unorm { top: 1023.0 },
+            Storage::Unorm8 => Coding::Unorm { top: 255.0, step: 1.0 },
+            Storage::Unorm16 => Coding::Unorm { top: 65535.0, step: 1.0 },
+            Storage::Rgb10a2 => Coding::Unorm { top: 1023.0, step: 1.0 },
+            Storage::Bc4 | Storage::Bc5 => Coding::Unorm { top: blocks::TOP, step: blocks::STEP },
             Storage::R11g11b10 if channel == 2 => {
                 Coding::Binary { digits: 6, least: -14, largest: 64512.0, signed: false }
             }
@@ -198,7 +232,7 @@ impl Storage {
     }
 
     /// The number that a reader gets back: `value` rounded to the nearest stored one, ties to even, as the only channel
-    /// of its texel.
+    /// of its texel, and of its block.
     ///
     /// `range` is the channel's; only a unorm uses it. A unorm takes a value beyond an end of its range by at most
     /// 1e-12 of the range for that end, and a storage without sign one of at least -1e-12 for zero: the noise of sums
@@ -223,9 +257,15 @@ impl Storage {
 
     /// Integer code of a value, as f64: `round((value - lo) / (hi - lo) top)`, ties to even. Floats have none.
     pub(crate) fn code(self, value: f64, range: [f64; 2]) -> Result<f64, QuantiseError> {
+        let position = self.position(value, range)?;
+        Ok(if self.is_bounded() { position.round_ties_even() } else { position })
+    }
+
+    /// The code before it is rounded; of floats the number itself.
+    pub(super) fn position(self, value: f64, range: [f64; 2]) -> Result<f64, QuantiseError> {
         let [lo, hi] = range;
         let storage = self.id();
-        let Coding::Unorm { top } = self.coding(0) else { return Ok(value) };
+        let Coding::Unorm { top, .. } = self.coding(0) else { return Ok(value) };
         if !(lo.is_finite() && hi.is_finite() && lo < hi && (hi - lo).is_finite()) {
             return Err(QuantiseError::Range { lo, hi, storage });
         }
@@ -233,11 +273,12 @@ impl Storage {
         if !(-NOISE..=1.0 + NOISE).contains(&x) {
             return Err(QuantiseError::OutOfRange { value, lo, hi, storage });
         }
-        Ok((x * top).round_ties_even().abs())
+        Ok((x.clamp(0.0, 1.0) * top).abs())
     }
 
     /// Quantises the channels of one texel in place; the error names the channel's index. A storage that couples them
-    /// takes the stored texel whose largest error is smallest.
+    /// takes the stored texel whose largest error is smallest. A storage made of blocks holds it as if the whole block were
+    /// that texel.
     ///
     /// # Errors
     /// The index of the channel and its [`QuantiseError`].
@@ -252,6 +293,12 @@ impl Storage {
         }
         for (c, v) in texel.iter_mut().enumerate() {
             *v = self.alone(*v, c, range(c)).map_err(|e| (c, e))?;
+        }
+        if let (Some(kind), Coding::Unorm { .. }) = (Kind::of(self), self.coding(0)) {
+            for (c, v) in texel.iter_mut().enumerate() {
+                let code = self.position(*v, range(c)).map_err(|e| (c, e))?;
+                *v = self.coding(c).decode(kind.alone(code), range(c));
+            }
         }
         match self.coding(0) {
             Coding::Shared(shared) => {
@@ -272,7 +319,7 @@ impl Storage {
     }
 
     /// Rounds a value if its channel is coded by itself, and checks it in any case.
-    fn alone(self, value: f64, channel: usize, range: [f64; 2]) -> Result<f64, QuantiseError> {
+    pub(super) fn alone(self, value: f64, channel: usize, range: [f64; 2]) -> Result<f64, QuantiseError> {
         if !value.is_finite() {
             return Err(QuantiseError::NotFinite { value });
         }
@@ -289,6 +336,9 @@ impl Storage {
                 let step = power_of_two(exponent(v).max(least) - digits + 1);
                 let rounded = (v / step).round_ties_even() * step;
                 if rounded.abs() > largest { Err(overflow(largest)) } else { Ok(rounded) }
+            }
+            coding @ Coding::Unorm { .. } if self.is_block() => {
+                Ok(coding.decode(self.position(value, range)?, range))
             }
             coding @ Coding::Unorm { .. } => Ok(coding.decode(self.code(value, range)?, range)),
             Coding::Shared(shared) => {
@@ -318,78 +368,16 @@ impl Storage {
     }
 
     /// The tolerance that suits this storage when the recipe names none: half a step just below 1 of the finest
-    /// channel; 1e-9 for [`Storage::Double`], whose steps are beyond any integral.
+    /// channel; 1e-9 for [`Storage::Double`], whose steps are beyond any integral. Of blocks it is the finest step that they
+    /// have, in a block that hardly varies; the error of the others is larger, and is what reports and files tell.
     #[must_use]
     pub fn default_tolerance(self) -> f64 {
         match self.coding(0) {
             Coding::Binary { digits: 53, .. } => 1e-9,
             Coding::Binary { digits, .. } => power_of_two(-digits - 1),
-            Coding::Unorm { top } => 0.5 / top,
+            Coding::Unorm { top, step } => 0.5 * step / top,
             Coding::Shared(Shared { top, .. }) => power_of_two(-exponent(top) - 2),
             Coding::Rgbd => (1.0 - coding::rgbd(254, 255)) / 2.0,
         }
     }
-}
-
-/// A table as a reader will see it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Quantised {
-    /// Stored values, `[texel][channel]`.
-    pub values: Vec<f64>,
-    /// Largest |stored - integral| and where it lies.
-    pub largest_error: Extreme,
-}
-
-/// A value of a table that its storage cannot hold, and where it is.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("channel {channel} at {}: {fault}", place(.at))]
-pub struct RangeFault {
-    /// Texel number.
-    pub texel: usize,
-    /// Channel id.
-    pub channel: String,
-    /// Axis ids and values.
-    pub at: Vec<(String, f64)>,
-    /// The value and its limit.
-    #[source]
-    pub fault: QuantiseError,
-}
-
-/// The end of the range for a value beyond it by no more than its own integration error: as good an estimate, and better.
-fn within_its_error(v: f64, [lo, hi]: [f64; 2], error: f64) -> f64 {
-    let kept = v.clamp(lo.min(hi), hi.max(lo));
-    if (v - kept).abs() <= error { kept } else { v }
-}
-
-/// Rounds every value of a table to its stored form. In a storage that encodes a range, a value beyond it by no more than
-/// its own integration error counts as the end of the range; one further out is an error, as everywhere.
-///
-/// # Errors
-/// [`RangeFault`] for the first value (in file order) that `storage` cannot hold.
-pub fn quantise_table(table: &Table, storage: Storage) -> Result<Quantised, RangeFault> {
-    let n = table.channels.len();
-    let mut values = table.values.clone();
-    let (mut largest, mut worst) = (0.0, 0);
-    for (t, texel) in values.chunks_exact_mut(n.max(1)).enumerate() {
-        if storage.is_bounded() {
-            for (c, v) in texel.iter_mut().enumerate() {
-                *v = within_its_error(*v, table.channels[c].range, table.errors[t * n + c]);
-            }
-        }
-        storage.quantise_texel(texel, |c| table.channels[c].range).map_err(|(c, fault)| RangeFault {
-            texel: t,
-            channel: table.channels[c].id.clone(),
-            at: table.coordinates(t),
-            fault,
-        })?;
-        for (c, v) in texel.iter().enumerate() {
-            let error = (v - table.values[t * n + c]).abs();
-            if error > largest {
-                (largest, worst) = (error, t * n + c);
-            }
-        }
-    }
-    let channel = table.channels.get(worst % n.max(1)).map_or_else(String::new, |c| c.id.clone());
-    let largest_error = Extreme { value: largest, channel, at: table.coordinates(worst / n.max(1)) };
-    Ok(Quantised { values, largest_error })
 }

@@ -1,5 +1,6 @@
 //! Texels as bytes: little-endian, components interleaved, rows from the top; and back.
 
+use super::blocks::Kind;
 use super::coding::{self, RGB9E5, RGBE};
 use super::read::{Claim, Plane, Sample};
 use super::{EncodeError, EncodeInput, Storage};
@@ -15,10 +16,17 @@ pub(super) static ON_GPUS: &[Storage] = &[
     Storage::R11g11b10,
     Storage::Rgb9e5,
     Storage::Rgbd,
+    Storage::Bc4,
+    Storage::Bc5,
+    Storage::Bc6h,
+    Storage::Bc6hSigned,
 ];
 
-/// Bytes of a texel.
+/// Bytes of a texel, or of a block of texels.
 pub(super) const fn size(storage: Storage, components: usize) -> usize {
+    if let Some(kind) = Kind::of(storage) {
+        return kind.block_bytes();
+    }
     match storage {
         Storage::Half | Storage::Unorm16 => 2 * components,
         Storage::Float => 4 * components,
@@ -28,8 +36,19 @@ pub(super) const fn size(storage: Storage, components: usize) -> usize {
     }
 }
 
-/// Components of a pixel of a storage that packs them all into one word.
+/// Bytes of a picture; nothing if they cannot be counted.
+pub(super) fn bytes(storage: Storage, components: usize, extent: [usize; 3]) -> Option<usize> {
+    match Kind::of(storage) {
+        Some(kind) => kind.bytes(extent),
+        None => extent.iter().try_fold(size(storage, components), |n, side| n.checked_mul(*side)),
+    }
+}
+
+/// Components of a pixel of a storage that packs them all into one word, or into one block.
 pub(super) const fn packed(storage: Storage) -> Option<usize> {
+    if let Some(kind) = Kind::of(storage) {
+        return Some(kind.channels());
+    }
     match storage {
         Storage::R11g11b10 | Storage::Rgb9e5 | Storage::Rgbe | Storage::Rgbd => Some(3),
         Storage::Rgb10a2 => Some(4),
@@ -39,6 +58,9 @@ pub(super) const fn packed(storage: Storage) -> Option<usize> {
 
 /// The bytes of all texels with `components` components each; those without channel hold the fill values.
 pub(super) fn pack(input: &EncodeInput<'_>, components: usize) -> Result<Vec<u8>, EncodeError> {
+    if input.storage.is_block() {
+        return Ok(input.blocks.to_vec());
+    }
     let n = input.channels.len();
     let fill = input.shape().fill(components);
     let mut bytes = Vec::with_capacity(input.grid.len() * size(input.storage, components));
@@ -47,7 +69,7 @@ pub(super) fn pack(input: &EncodeInput<'_>, components: usize) -> Result<Vec<u8>
         for (c, code) in codes.iter_mut().enumerate() {
             *code = match texel.get(c) {
                 Some(&v) => {
-                    input.storage.code(v, input.channels[c].range).map_err(|_| not_quantised(input, t, c))?
+                    input.storage.code(v, input.channels[c].range).map_err(|_| input.not_quantised(t, c))?
                 }
                 None => top(input.storage, c) * fill[c - n],
             };
@@ -55,16 +77,6 @@ pub(super) fn pack(input: &EncodeInput<'_>, components: usize) -> Result<Vec<u8>
         put(input.storage, &codes, &mut bytes);
     }
     Ok(bytes)
-}
-
-fn not_quantised(input: &EncodeInput<'_>, texel: usize, c: usize) -> EncodeError {
-    let n = input.channels.len();
-    EncodeError::NotQuantised {
-        texel,
-        channel: input.channels[c].id.clone(),
-        value: input.values[texel * n + c],
-        storage: input.storage.id(),
-    }
 }
 
 /// The code of 1.
@@ -119,11 +131,13 @@ fn put(storage: Storage, codes: &[f64], bytes: &mut Vec<u8>) {
             bytes.extend(codes);
             bytes.push(d);
         }
+        // their bytes are there already: see `pack`
+        Storage::Bc4 | Storage::Bc5 | Storage::Bc6h | Storage::Bc6hSigned => {}
     }
 }
 
 /// The planes of a picture as components `R`, `G`, `B`, `A`. Unorm planes hold codes until [`finish`] decodes them.
-pub(super) fn unpack(bytes: &[u8], storage: Storage, components: usize) -> Vec<Plane> {
+pub(super) fn unpack(bytes: &[u8], storage: Storage, components: usize, extent: [usize; 3]) -> Vec<Plane> {
     let sample = Sample::of(storage);
     let names = if components == 1 { &["R"][..] } else { &["R", "G", "B", "A"][..] };
     let mut planes: Vec<Plane> = (0..components)
@@ -134,6 +148,12 @@ pub(super) fn unpack(bytes: &[u8], storage: Storage, components: usize) -> Vec<P
             values: Vec::with_capacity(bytes.len() / size(storage, components).max(1)),
         })
         .collect();
+    if let Some(kind) = Kind::of(storage) {
+        for (plane, values) in planes.iter_mut().zip(kind.expand(bytes, extent)) {
+            plane.values = values;
+        }
+        return planes;
+    }
     let mut texel = vec![0.0; components];
     for word in bytes.chunks_exact(size(storage, components)) {
         take(storage, word, &mut texel);
@@ -187,6 +207,8 @@ fn take(storage: Storage, bytes: &[u8], texel: &mut [f64]) {
                 *v = coding::rgbd(code, d);
             }
         }
+        // not word by word: see `unpack`
+        Storage::Bc4 | Storage::Bc5 | Storage::Bc6h | Storage::Bc6hSigned => {}
     }
 }
 

@@ -138,6 +138,7 @@ fn encode_output(
         grid: &table.grid,
         channels: &table.channels,
         values: &stored.values,
+        blocks: &stored.blocks,
         // the estimates are those of the integrals
         errors: if texels.as_ref().is_some_and(|t| t.held != "exact") { &[] } else { &table.errors },
         storage,

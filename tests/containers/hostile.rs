@@ -21,6 +21,8 @@ fn seeds() -> &'static [Vec<u8>] {
             file(&[9, 5], 2, "npy", Storage::Float, &[]),
             file(&[9, 5], 2, "hdr", Storage::Rgbe, &[]),
             file(&[3, 5], 2, "hdr", Storage::Rgbe, &[]),
+            file(&[9, 5], 2, "ktx2", Storage::Bc6h, &[]),
+            file(&[9, 5, 3], 2, "dds", Storage::Bc5, &[]),
         ];
         if cfg!(feature = "zstd") {
             seeds.push(file(&[32, 32], 2, "ktx2", Storage::Half, &[FileOption::Zstd]));
@@ -55,6 +57,8 @@ fn forged_sizes_are_refused() {
     let dds = "dds: the header tells of 2147483647 x 5 pixels; at most 2^28 samples are read";
     assert_eq!(forge(3, 16, &huge), dds);
     assert_eq!(forge(3, 16, &[10]), "dds: the file has 90 bytes of pixels, its header tells of 100");
+    assert_eq!(forge(8, 20, &[13]), "ktx2: the level has 96 bytes, its size tells of 128");
+    assert_eq!(forge(9, 16, &[13]), "dds: the file has 288 bytes of pixels, its header tells of 384");
     let text = String::from_utf8_lossy(&seeds()[5]).into_owned();
     let shape = text.find("(5, 9, 2)").unwrap();
     // the replacement character of the magic is two bytes longer than its byte
@@ -71,7 +75,7 @@ fn forged_sizes_are_refused() {
 #[cfg(feature = "zstd")]
 fn a_frame_that_holds_more_than_it_should_is_found_out() {
     // 64 MiB of zeros in place of 4096 bytes
-    let mut file = seeds()[8].clone();
+    let mut file = seeds()[10].clone();
     let start = u64::from_le_bytes(file[80..88].try_into().unwrap()) as usize;
     let bomb = zstd::bulk::compress(&vec![0; 1 << 26], 3).unwrap();
     file.truncate(start);

@@ -6,7 +6,7 @@ use brdfbake::encode::{FileOption, Storage};
 use half::f16;
 use ktx2::{Format, Reader, SupercompressionScheme, dfd::Basic};
 
-const FORMATS: [(Storage, [Option<Format>; 4]); 8] = [
+const FORMATS: [(Storage, [Option<Format>; 4]); 12] = [
     (
         Storage::Half,
         [
@@ -47,6 +47,10 @@ const FORMATS: [(Storage, [Option<Format>; 4]); 8] = [
     (Storage::R11g11b10, [Some(Format::B10G11R11_UFLOAT_PACK32); 4]),
     (Storage::Rgb9e5, [Some(Format::E5B9G9R9_UFLOAT_PACK32); 4]),
     (Storage::Rgbd, [Some(Format::R8G8B8A8_UNORM); 4]),
+    (Storage::Bc4, [Some(Format::BC4_UNORM_BLOCK); 4]),
+    (Storage::Bc5, [Some(Format::BC5_UNORM_BLOCK); 4]),
+    (Storage::Bc6h, [Some(Format::BC6H_UFLOAT_BLOCK); 4]),
+    (Storage::Bc6hSigned, [Some(Format::BC6H_SFLOAT_BLOCK); 4]),
 ];
 
 #[test]

@@ -30,16 +30,17 @@ pub(crate) fn written(
     storage: Storage,
     options: &[FileOption],
 ) -> Result<(Vec<u8>, Vec<f64>), EncodeError> {
-    let values = quantise_table(table, storage).unwrap().values;
+    let rounded = quantise_table(table, storage).unwrap();
     let json = serde_json::to_string(&sample::provenance(table, storage)).unwrap();
     let input = EncodeInput {
         grid: &table.grid,
         channels: &table.channels,
-        values: &values,
+        values: &rounded.values,
+        blocks: &rounded.blocks,
         errors: &table.errors,
         storage,
         options,
         provenance_json: &json,
     };
-    Ok((encoder(container).unwrap().encode(&input)?, values))
+    Ok((encoder(container).unwrap().encode(&input)?, rounded.values))
 }

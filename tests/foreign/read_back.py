@@ -5,7 +5,7 @@
     BRDFBAKE_FOREIGN=foreign-out cargo test --test foreign -- --ignored
     python3 tests/foreign/read_back.py foreign-out
 
-Every .exr, .png, .hdr and .npy below the folder is read. Next to a file, `<name>.expected.json` (written by tests/foreign.rs) says
+Every .exr, .png, .hdr and .npy below the folder is read, and .dds of blocks. Next to a file, `<name>.expected.json` (written by tests/foreign.rs) says
 which bits every channel must have; without it, the libraries are compared with each other and with the metadata in
 the file (size, channels, sample type), which is how the outputs of the command are checked.
 
@@ -33,6 +33,10 @@ STORAGE = {
     "uint16": "unorm16",
     "rgbd": "rgbd",
     "rgbe": "rgbe",
+    "bc4": "bc4",
+    "bc5": "bc5",
+    "bc6h": "bc6h",
+    "bc6h-signed": "bc6h-signed",
 }
 
 
@@ -134,11 +138,39 @@ def hdr(path):
     return {name: (p.astype(np.float64), "rgbe") for name, p in zip(named, planes)}, text
 
 
+def sidecar_of(path):
+    return path.with_name(path.name + ".expected.json")
+
+
+def made_of_blocks(path):
+    sidecar = sidecar_of(path)
+    return sidecar.exists() and json.loads(sidecar.read_text(encoding="utf-8"))["storage"].startswith("bc")
+
+
+def dds(path):
+    """Blocks as OpenImageIO decodes them: halfs of BC6H, 8 bits of BC4 and BC5. The expectation names the channels."""
+    expected = json.loads(sidecar_of(path).read_text(encoding="utf-8"))
+    channels, _, _ = openimageio(path)
+    named, storage = json.loads(expected["brdfbake"])["channels"], expected["storage"]
+    planes = list(channels.values())
+    same("channels", len(planes), {"bc4": 1, "bc5": 2}.get(storage, 3))
+    for rest in planes[len(named) :]:
+        if rest.any():
+            raise Difference("a component without channel is not empty")
+    values = {}
+    for channel, plane in zip(named, planes):
+        ramp = storage in ("bc4", "bc5")
+        same(f"type of {channel['id']}", str(plane.dtype), "uint8" if ramp else "float16")
+        lo, hi = channel["range"] if ramp else (0.0, 1.0)
+        values[channel["id"]] = (lo + plane.astype(np.float64) / (255.0 if ramp else 1.0) * (hi - lo), storage)
+    return values, expected["brdfbake"]
+
+
 def npy(path):
     """An array says nothing of itself: the expectation names its channels."""
     array = np.load(path, allow_pickle=False)
     same("C order", array.flags["C_CONTIGUOUS"], True)
-    sidecar = path.with_name(path.name + ".expected.json")
+    sidecar = sidecar_of(path)
     if not sidecar.exists():
         return {f"c{i}": (array[..., i].reshape(-1, array.shape[-2]), str(array.dtype)) for i in range(array.shape[-1])}, None
     expected = json.loads(sidecar.read_text(encoding="utf-8"))
@@ -152,7 +184,7 @@ def check(path):
         arrays, text = exr(path)
         channels = {name: (values, str(values.dtype)) for name, values in arrays.items()}
     else:
-        channels, text = {".png": png, ".hdr": hdr, ".npy": npy}[path.suffix](path)
+        channels, text = {".png": png, ".hdr": hdr, ".npy": npy, ".dds": dds}[path.suffix](path)
     if text is None and path.suffix == ".npy":
         return "an array without metadata"
     if text is None:
@@ -167,7 +199,7 @@ def check(path):
         same(f"storage of {name}", STORAGE.get(dtype), told["encoding"]["storage"])
         if not np.isfinite(values).all():
             raise Difference(f"{name}: a value is not finite")
-    sidecar = path.with_name(path.name + ".expected.json")
+    sidecar = sidecar_of(path)
     if not sidecar.exists():
         return "libraries and metadata agree"
     expected = json.loads(sidecar.read_text(encoding="utf-8"))
@@ -182,6 +214,11 @@ def check(path):
                 g, e = (np.uint64(int(x, 16)).view(np.float64) for x in (g, e))
                 same(f"{name}, texel {i}: {g} for {e}", bool(abs(g - e) <= 1e-14 * abs(e)), True)
                 continue
+            if expected["storage"] in ("bc4", "bc5"):
+                # decoded to 8 bits there, in steps of a ramp that are rounded too
+                g, e = (np.uint64(int(x, 16)).view(np.float64) for x in (g, e))
+                same(f"{name}, texel {i}: {g} for {e}", bool(abs(g - e) <= 1 / 255), True)
+                continue
             same(f"{name}, texel {i}", g, e)
     return f"{len(expected['channels'])} channels, every bit as expected"
 
@@ -190,7 +227,11 @@ def main():
     if len(sys.argv) != 2:
         print(__doc__, file=sys.stderr)
         return 2
-    files = sorted(p for p in Path(sys.argv[1]).rglob("*") if p.suffix in (".exr", ".png", ".hdr", ".npy"))
+    files = sorted(
+        p
+        for p in Path(sys.argv[1]).rglob("*")
+        if p.suffix in (".exr", ".png", ".hdr", ".npy") or p.suffix == ".dds" and made_of_blocks(p)
+    )
     if not files:
         print(f"no picture below {sys.argv[1]}", file=sys.stderr)
         return 2

@@ -1,7 +1,7 @@
 //! Pictures, volumes and arrays as KTX2 and DDS, with options, and what they must hold.
 
 use super::sample;
-use brdfbake::encode::{EncodeInput, FileOption, Shape, Storage, encoder, quantise_table};
+use brdfbake::encode::{EncodeInput, FileOption, Quantised, Shape, Storage, encoder, quantise_table};
 use brdfbake::grid::{Axis, Channel, Grid, Quantity, Table, Texel};
 use std::path::Path;
 
@@ -63,13 +63,14 @@ fn write_one(
     // three components of DDS become four
     let channels = if storage == Storage::Rgb9e5 { 3 } else { 2 + lengths.len() % 2 };
     let t = table(lengths, channels);
-    let values = quantise_table(&t, storage).unwrap().values;
+    let Quantised { values, blocks, .. } = quantise_table(&t, storage).unwrap();
     let provenance_json = serde_json::to_string(&sample::provenance(&t, storage)).unwrap();
     let (grid, channels, errors) = (&t.grid, &t.channels, &t.errors);
     let input = EncodeInput {
         grid,
         channels,
         values: &values,
+        blocks: &blocks,
         errors,
         storage,
         options,

@@ -77,10 +77,12 @@ pub(crate) fn provenance(table: &Table, storage: Storage) -> Provenance {
 
 /// The bytes of a table in a container.
 pub(crate) fn file(encoder: &dyn Encoder, table: &Table, storage: Storage, p: &Provenance) -> Vec<u8> {
+    let rounded = quantise_table(table, storage).unwrap();
     let input = EncodeInput {
         grid: &table.grid,
         channels: &table.channels,
-        values: &quantise_table(table, storage).unwrap().values,
+        values: &rounded.values,
+        blocks: &rounded.blocks,
         errors: &table.errors,
         storage,
         options: &[],
@@ -104,7 +106,9 @@ pub(crate) fn hard(storage: Storage) -> fn(usize, f64) -> f64 {
         }
         Storage::Rgbe => |i, x| [0.0, 1e30, 1e-38, 255.7 / 256.0, 1.0].get(i).copied().unwrap_or(x),
         Storage::Rgbd => |i, x| [0.0, 255.0, 1e-7, 9.13, 1.0].get(i).copied().unwrap_or(x),
-        Storage::Unorm8 | Storage::Unorm16 | Storage::Rgb10a2 => {
+        Storage::Bc6h => |i, x| [0.0, 65504.0, 1e-6, 5.96e-8].get(i).copied().unwrap_or(x),
+        Storage::Bc6hSigned => |i, x| [0.0, -65504.0, 65504.0, -5.96e-8, -x].get(i).copied().unwrap_or(x),
+        Storage::Unorm8 | Storage::Unorm16 | Storage::Rgb10a2 | Storage::Bc4 | Storage::Bc5 => {
             |i, x| [0.0, 1.0, 0.5 / 65535.0, 1.5 / 65535.0].get(i).copied().unwrap_or(x)
         }
     }

@@ -210,6 +210,7 @@ fn what_does_not_fit_is_refused() {
         grid: &grid,
         channels: &channels,
         values: &[0.0; 64],
+        blocks: &[],
         errors: &[0.0; 64],
         options: &[],
         storage: Storage::Float,
