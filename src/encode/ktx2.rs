@@ -76,7 +76,7 @@ impl Encoder for Ktx2 {
     }
 
     fn read(&self, bytes: &[u8]) -> Result<Image, ReadError> {
-        super::ktx2_read::read(bytes)
+        ktx2_read::read(bytes)
     }
 
     fn joins(&self) -> bool {

@@ -264,13 +264,8 @@ pub static ENGINES: &[Engine] = &[
                 [2.942e-4, 1.572e-4],
                 [2.942e-4, 1.716e-4]
             ),
-            measured(cycles!("cycles-ggx-glass-E", "ggx_glass_E"), SHADER_TABLES, [0.0, 0.0], [0.0, 0.0]),
-            measured(
-                cycles!("cycles-ggx-glass-Eavg", "ggx_glass_Eavg"),
-                SHADER_TABLES,
-                [0.0, 0.0],
-                [0.0, 0.0]
-            ),
+            cycles!("cycles-ggx-glass-E", "ggx_glass_E"),
+            cycles!("cycles-ggx-glass-Eavg", "ggx_glass_Eavg"),
             cycles!("cycles-ggx-glass-inv-E", "ggx_glass_inv_E"),
             cycles!("cycles-ggx-glass-inv-Eavg", "ggx_glass_inv_Eavg"),
             cycles!("cycles-ggx-gen-schlick-ior-s", "ggx_gen_schlick_ior_s"),

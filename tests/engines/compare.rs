@@ -274,8 +274,6 @@ fn registry_knows_how_far_off_the_shipped_files_are() {
         ("selfshadow-ltc", "ltc-2", "selfshadow_ltc/ltc_js_g_ltc_2.npy"),
         ("cycles", "cycles-ggx-E", "cycles/ggx_E.npy"),
         ("cycles", "cycles-ggx-Eavg", "cycles/ggx_Eavg.npy"),
-        ("cycles", "cycles-ggx-glass-E", "cycles/ggx_glass_E.npy"),
-        ("cycles", "cycles-ggx-glass-Eavg", "cycles/ggx_glass_Eavg.npy"),
     ] {
         let plan = plan(id, |name| name == table);
         let planned = &plan.tables[0];

@@ -85,10 +85,9 @@ fn read_by_the_lines(s: &Suggestion, name: &str, error: f64) {
             let mut texel: Vec<f32> =
                 texture.sample([f64::from(uv[0]), f64::from(uv[1])]).iter().map(|v| *v as f32).collect();
             texel.resize(4, 0.0);
-            let read = match found.recipe.contains("dfg.loss") {
-                true => shader.call(&format!("{name}_decode"), &[texel, vec![mu]]),
-                false => shader.call(&format!("{name}_decode"), &[texel]),
-            };
+            let arguments =
+                if found.recipe.contains("dfg.loss") { vec![texel, vec![mu]] } else { vec![texel] };
+            let read = shader.call(&format!("{name}_decode"), &arguments);
             let [mu, r] = [f64::from(mu), f64::from(r)];
             let exact = bound.baker.texel(&[mu, r * r], 1e-7).unwrap().value;
             for c in 0..2 {

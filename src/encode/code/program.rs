@@ -30,7 +30,7 @@ impl Program<'_> {
     /// The program of a table; refused if an axis sweeps a quantity whose map to its base is not known here.
     pub(super) fn new<'a>(input: &EncodeInput<'a>) -> Result<Program<'a>, EncodeError> {
         let axes = input.grid.axes();
-        let indices = indices(axes)?;
+        let indices = indices(axes, false)?;
         Ok(Program {
             name: identifier(input.provenance_json),
             arguments: axes.iter().map(|a| a.quantity.id).collect(),
@@ -130,12 +130,17 @@ fn offset(corner: usize, channel: usize) -> String {
 }
 
 /// Fractional index on each axis; refused if one sweeps a quantity whose map to its base is not known here.
-pub(super) fn indices(axes: &[Axis]) -> Result<Vec<Expression>, EncodeError> {
+/// `clamped`: what lies outside of a domain counts as its end in couplings too.
+pub(super) fn indices(axes: &[Axis], clamped: bool) -> Result<Vec<Expression>, EncodeError> {
     let one = |axis: &Axis| {
         let coupled = match axis.warp.couples_to() {
             None => Expression::Number(0.0),
             Some(base) => match axes.iter().find(|a| a.quantity.base_id() == base) {
-                Some(other) => to_base(other)?,
+                Some(other) if clamped => {
+                    let [lo, hi] = other.domain;
+                    to_base(other, Expression::name(other.quantity.id).clamp(lo, hi))?
+                }
+                Some(other) => to_base(other, Expression::name(other.quantity.id))?,
                 None => Expression::name(base),
             },
         };
@@ -169,9 +174,8 @@ fn index(axis: &Axis, coupled: Expression) -> Expression {
     place.clamp(0.0, last)
 }
 
-/// The base quantity of an axis, from its argument.
-fn to_base(axis: &Axis) -> Result<Expression, EncodeError> {
-    let v = Expression::name(axis.quantity.id);
+/// The base quantity of an axis, from its own.
+fn to_base(axis: &Axis, v: Expression) -> Result<Expression, EncodeError> {
     let one = || Expression::Number(1.0);
     match axis.quantity.id {
         id if id == axis.quantity.base_id() => Ok(v),

@@ -75,7 +75,7 @@ fn coordinates(name: &str, grid: &Grid, syntax: &dyn Syntax) -> Result<Lines, En
         return Err(EncodeError::Axes { format: syntax.id(), fault: "a picture has two" });
     }
     let mut body = String::new();
-    for (n, index) in indices(axes)?.iter().enumerate() {
+    for (n, index) in indices(axes, true)?.iter().enumerate() {
         let line = syntax.float(&format!("x{n}"), &index.write(syntax, false), false);
         body.push_str(&format!("    {line}\n"));
     }
