@@ -336,7 +336,6 @@ pub static ENGINES: &[Engine] = &[
                 "linear between the cosines max((i / 15)^2, 1e-6) and in roughness; 1 - E"
             ),
             file("osl-dielectric-front", "BSDL/SPI/bsdf_dielectric_front_luts.h of the build", OSL_GLASS),
-            file("osl-dielectric-back", "BSDL/SPI/bsdf_dielectric_back_luts.h of the build", OSL_GLASS),
         ]
     ),
     engine!(
