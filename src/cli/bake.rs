@@ -1,7 +1,7 @@
 //! `brdfbake bake`.
 
 use super::progress::{self, Format};
-use super::{Exit, Failure, engine, output, scene};
+use super::{Exit, Failure, engine, output, scene, suggest};
 use crate::pipeline::{self, PipelineError, Settings};
 use crate::recipe::{self, LoadError, Plan};
 use std::path::PathBuf;
@@ -19,6 +19,13 @@ pub struct Args {
     /// Bake the tables that this engine loads, in its own files (`list engines`).
     #[arg(long, value_name = "ENGINE", conflicts_with_all = ["recipe", "scene"])]
     engine: Option<String>,
+    /// Bake nothing: print the smallest table that the engine's shader could read to within this error, its recipe, and
+    /// the lines that read it. 1e-3 if no error is given.
+    #[arg(long, value_name = "ERROR", requires = "engine", num_args = 0..=1, default_missing_value = "1e-3")]
+    suggest: Option<f64>,
+    /// Where the suggestion must hold: everywhere, or where mu >= 0.05 and roughness >= 0.09.
+    #[arg(long, value_enum, default_value = "whole", requires = "suggest")]
+    domain: suggest::Domain,
     /// Output folder.
     #[arg(short, long, value_name = "DIR", default_value = "brdfbake-out")]
     out: PathBuf,
@@ -42,6 +49,10 @@ pub struct Args {
 /// [`Failure`] with the exit code of the cause; the output folder is then as it was.
 pub fn run(args: &Args, cancel: &Arc<AtomicBool>) -> Result<Exit, Failure> {
     let engine = args.engine.as_deref().map(engine::plan).transpose()?;
+    if let (Some((engine, plan)), Some(error)) = (&engine, args.suggest) {
+        let jobs = args.jobs.map(usize::from);
+        return suggest::run(engine, plan, error, args.domain, jobs, args.message_format, cancel);
+    }
     let (engine, plan) = match (engine, &args.scene) {
         (Some((engine, plan)), _) => (Some(engine), plan),
         (None, Some(path)) => match scene::plan(path, args.quiet, args.message_format)? {

@@ -16,6 +16,7 @@ pub mod output;
 pub mod plot;
 pub mod progress;
 pub mod scene;
+mod suggest;
 
 use clap::{Parser, Subcommand};
 pub use exit::{Exit, Failure};

@@ -19,9 +19,12 @@
 //! `KTXwriterScParams` if it is supercompressed, and `brdfbake`, the provenance as JSON text. Values end with a NUL, as
 //! those of the format's own keys do. The descriptor is that of [`super`]'s `dfd`.
 //!
+//! Tables that name the same file become the layers of an array, and `brdfbake` a list.
+//!
 //! Source: KTX File Format Specification 2.0.4, sections 2 and 3. Zstandard is level 19; the bytes then depend on the
 //! version of its library, the values do not.
 
+use super::ktx2_read::{self, Raw};
 use super::{EncodeError, EncodeInput, Encoder, FileOption, Image, ReadError, Shape, Storage, dfd, texels};
 use crate::grid::provenance::ATTRIBUTE;
 
@@ -75,7 +78,15 @@ impl Encoder for Ktx2 {
     }
 
     fn read(&self, bytes: &[u8]) -> Result<Image, ReadError> {
-        super::ktx2_read::read(bytes)
+        ktx2_read::read(bytes)
+    }
+
+    fn joins(&self) -> bool {
+        true
+    }
+
+    fn join(&self, files: &[Vec<u8>]) -> Result<Vec<u8>, EncodeError> {
+        join(files)
     }
 
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
@@ -85,36 +96,62 @@ impl Encoder for Ktx2 {
         let pixels = texels::pack(input, components)?;
         // RGBD is four bytes a pixel, whatever its components
         let written = if input.storage == Storage::Rgbd { 4 } else { components };
-        let descriptor = dfd::descriptor(input.storage, written);
-        let keys = keys(input, &shape);
-        let zstd = shape.has(FileOption::Zstd);
-        let data = if zstd { compress(&pixels)? } else { pixels.clone() };
-        // data that is not supercompressed begins at a multiple of its texel, or block, and of 4
-        let align = if zstd { 1 } else { lcm(texels::size(input.storage, components), 4) };
-        let start = (HEAD + descriptor.len() + keys.len()).next_multiple_of(align);
-        let too_large = || {
-            let [width, height] = input.size();
-            EncodeError::Size { format: "ktx2", width, height, limit: 1 << 26 }
+        let [width, height, slices] = shape.extent();
+        let parts = Parts {
+            storage: input.storage,
+            components: written,
+            size: [width, height],
+            depth: if shape.is_volume() { slices } else { 0 },
+            layers: shape.layers().unwrap_or(0),
+            zstd: shape.has(FileOption::Zstd),
+            provenance: input.provenance_json,
+            pixels,
         };
+        parts.write()
+    }
+}
+
+/// What a file holds.
+struct Parts<'a> {
+    storage: Storage,
+    /// Components as written.
+    components: usize,
+    size: [usize; 2],
+    /// Slices of a volume, layers of an array; 0 for none.
+    depth: usize,
+    layers: usize,
+    zstd: bool,
+    provenance: &'a str,
+    pixels: Vec<u8>,
+}
+
+impl Parts<'_> {
+    fn write(&self) -> Result<Vec<u8>, EncodeError> {
+        let descriptor = dfd::descriptor(self.storage, self.components);
+        let keys = self.keys();
+        let data = if self.zstd { compress(&self.pixels)? } else { self.pixels.clone() };
+        // data that is not supercompressed begins at a multiple of its texel and of 4
+        let texel = texels::size(self.storage, self.components);
+        let align = if self.zstd { 1 } else { lcm(texel, 4) };
+        let start = (HEAD + descriptor.len() + keys.len()).next_multiple_of(align);
+        let [width, height] = self.size;
+        let too_large = || EncodeError::Size { format: "ktx2", width, height, limit: 1 << 26 };
         let word = |n: usize| u32::try_from(n).map_err(|_| too_large());
         let mut out = MAGIC.to_vec();
-        let [width, height, slices] = shape.extent();
-        let depth = if shape.is_volume() { slices } else { 0 };
-        let layers = shape.layers().unwrap_or(0);
-        let format = vk_format(input.storage, written);
-        for n in [format, type_size(input.storage), word(width)?, word(height)?, word(depth)?, word(layers)?]
-        {
+        let format = vk_format(self.storage, self.components);
+        let [depth, layers] = [word(self.depth)?, word(self.layers)?];
+        for n in [format, type_size(self.storage), word(width)?, word(height)?, depth, layers] {
             out.extend(n.to_le_bytes());
         }
         // one face, one level
-        for n in [1, 1, if zstd { SCHEME_ZSTD } else { 0 }] {
+        for n in [1, 1, if self.zstd { SCHEME_ZSTD } else { 0 }] {
             out.extend(n.to_le_bytes());
         }
         for n in [HEAD, descriptor.len(), HEAD + descriptor.len(), keys.len()] {
             out.extend(word(n)?.to_le_bytes());
         }
         out.extend([0; 16]);
-        for n in [start, data.len(), pixels.len()] {
+        for n in [start, data.len(), self.pixels.len()] {
             out.extend((n as u64).to_le_bytes());
         }
         out.extend(descriptor);
@@ -123,27 +160,50 @@ impl Encoder for Ktx2 {
         out.extend(data);
         Ok(out)
     }
+
+    /// Key/value data, sorted by key, every entry padded to 4 bytes.
+    fn keys(&self) -> Vec<u8> {
+        let writer = format!("brdfbake {}", env!("CARGO_PKG_VERSION"));
+        let mut entries = vec![
+            ("KTXorientation", if self.depth > 0 { "rdi" } else { "rd" }),
+            ("KTXwriter", writer.as_str()),
+        ];
+        if self.zstd {
+            entries.push(("KTXwriterScParams", "--zstd 19"));
+        }
+        entries.push((ATTRIBUTE, self.provenance));
+        let mut out = Vec::new();
+        for (key, value) in entries {
+            let length = u32::try_from(key.len() + value.len() + 2).unwrap_or(0);
+            out.extend(length.to_le_bytes());
+            out.extend([key.as_bytes(), &[0], value.as_bytes(), &[0]].concat());
+            out.resize(out.len().next_multiple_of(4), 0);
+        }
+        out
+    }
 }
 
-/// Key/value data, sorted by key, every entry padded to 4 bytes.
-fn keys(input: &EncodeInput<'_>, shape: &Shape<'_>) -> Vec<u8> {
-    let writer = format!("brdfbake {}", env!("CARGO_PKG_VERSION"));
-    let mut entries = vec![
-        ("KTXorientation", if shape.is_volume() { "rdi" } else { "rd" }),
-        ("KTXwriter", writer.as_str()),
-    ];
-    if shape.has(FileOption::Zstd) {
-        entries.push(("KTXwriterScParams", "--zstd 19"));
-    }
-    entries.push((ATTRIBUTE, input.provenance_json));
-    let mut out = Vec::new();
-    for (key, value) in entries {
-        let length = u32::try_from(key.len() + value.len() + 2).unwrap_or(0);
-        out.extend(length.to_le_bytes());
-        out.extend([key.as_bytes(), &[0], value.as_bytes(), &[0]].concat());
-        out.resize(out.len().next_multiple_of(4), 0);
-    }
-    out
+/// One array of several files, layer after layer; the key `brdfbake` is then a list of their provenances.
+fn join(files: &[Vec<u8>]) -> Result<Vec<u8>, EncodeError> {
+    let library = |e: ReadError| EncodeError::Library { format: "ktx2", source: Box::new(e) };
+    let all: Vec<Raw> = files.iter().map(|f| ktx2_read::raw(f).map_err(library)).collect::<Result<_, _>>()?;
+    let fault = "tables in one file become layers of an array: all of one size, storage and options, without a third axis";
+    let alike = |r: &Raw| all.first().is_some_and(|a| r.is_like(a)) && r.is_flat();
+    let Some(first) = all.first().filter(|_| all.iter().all(alike)) else {
+        return Err(EncodeError::Axes { format: "ktx2", fault });
+    };
+    let texts: Vec<&str> = all.iter().map(|r| r.provenance.as_str()).collect();
+    let parts = Parts {
+        storage: first.storage,
+        components: first.components,
+        size: [first.extent[0], first.extent[1]],
+        depth: 0,
+        layers: all.len(),
+        zstd: first.zstd,
+        provenance: &format!("[{}]", texts.join(",")),
+        pixels: all.iter().flat_map(|r| r.pixels.iter().copied()).collect(),
+    };
+    parts.write()
 }
 
 /// `VkFormat` of a storage.

@@ -2,6 +2,7 @@
 //!
 //! By hand: the crate `ktx2` (0.5) panics on a descriptor with a block dimension of 256, and little of it would be used.
 
+use super::Storage;
 use super::ktx2::{SCHEME_ZSTD, storage};
 use super::read::{Claim, Image, MAX_SAMPLES, ReadError};
 use super::texels;
@@ -13,7 +14,32 @@ const FORMAT: &str = "ktx2";
 /// Longest provenance that is taken.
 const MAX_TEXT: usize = 1 << 24;
 
-pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
+/// A file taken apart.
+pub(super) struct Raw {
+    pub(super) storage: Storage,
+    pub(super) components: usize,
+    /// Width, height, depth, layers; 0 where there is none.
+    pub(super) extent: [usize; 4],
+    pub(super) zstd: bool,
+    /// The value of the key `brdfbake`; empty if there is none.
+    pub(super) provenance: String,
+    /// The bytes of the level, unpacked.
+    pub(super) pixels: Vec<u8>,
+}
+
+impl Raw {
+    pub(super) fn is_like(&self, other: &Raw) -> bool {
+        let kind = |r: &Raw| (r.storage, r.components, r.extent, r.zstd);
+        kind(self) == kind(other)
+    }
+
+    /// A picture with no slices.
+    pub(super) fn is_flat(&self) -> bool {
+        self.extent[2..] == [0, 0]
+    }
+}
+
+pub(super) fn raw(bytes: &[u8]) -> Result<Raw, ReadError> {
     let format = word(bytes, 12)?;
     let (storage, components) =
         storage(format).ok_or_else(|| fault(format!("VkFormat {format} is not supported")))?;
@@ -21,44 +47,52 @@ pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
     if faces != 1 {
         return Err(fault(format!("{faces} faces; cube maps are not supported")));
     }
-    let width = word(bytes, 20)? as usize;
-    // height, depth, layers: 0 where there is none
-    let mut sides = [1usize; 3];
-    for (side, at) in sides.iter_mut().zip([24, 28, 32]) {
-        *side = (word(bytes, at)? as usize).max(1);
+    let mut extent = [0; 4];
+    for (n, at) in extent.iter_mut().zip([20, 24, 28, 32]) {
+        *n = word(bytes, at)? as usize;
     }
-    let slices = sides[1].saturating_mul(sides[2]);
-    let height = sides[0].saturating_mul(slices);
+    let width = extent[0];
+    let height = extent[1..].iter().fold(1usize, |height, n| height.saturating_mul((*n).max(1)));
     if width == 0 {
         return Err(fault("the width is 0".to_owned()));
     }
     if width.saturating_mul(height).saturating_mul(components) > MAX_SAMPLES {
         return Err(ReadError::Samples { format: FORMAT, width, height });
     }
-    let extent = [width, sides[0], slices];
-    let size = texels::bytes(storage, components, extent).ok_or(ReadError::Samples {
+    let slices = extent[2].max(1).saturating_mul(extent[3].max(1));
+    let size = texels::bytes(storage, components, [width, extent[1].max(1), slices])
+        .ok_or(ReadError::Samples { format: FORMAT, width, height })?;
+    let [start, length] = [80, 88].map(|at| long(bytes, at));
+    let level = part(bytes, start?, length?)?;
+    let scheme = word(bytes, 44)?;
+    let pixels = match scheme {
+        0 => level.to_vec(),
+        SCHEME_ZSTD => decompress(level, size)?,
+        other => return Err(fault(format!("supercompression {other} is not supported"))),
+    };
+    if pixels.len() != size {
+        return Err(fault(format!("the level has {} bytes, its size tells of {size}", pixels.len())));
+    }
+    let keys = part(bytes, word(bytes, 56)?.into(), word(bytes, 60)?.into())?;
+    let text = value(keys, ATTRIBUTE.as_bytes()).filter(|t| t.len() <= MAX_TEXT).unwrap_or_default();
+    let provenance = String::from_utf8_lossy(text.strip_suffix(&[0]).unwrap_or(text)).into_owned();
+    Ok(Raw { storage, components, extent, zstd: scheme == SCHEME_ZSTD, provenance, pixels })
+}
+
+pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
+    let raw = raw(bytes)?;
+    let [width, rest @ ..] = raw.extent;
+    let [rows, depth, layers] = rest.map(|n| n.max(1));
+    let height = rows * depth * layers;
+    let provenance = (!raw.provenance.is_empty()).then(|| Claim::parse(raw.provenance));
+    let planes = texels::unpack(&raw.pixels, raw.storage, raw.components, [width, rows, depth * layers]);
+    Ok(Image {
         format: FORMAT,
         width,
         height,
-    })?;
-    let [start, length] = [80, 88].map(|at| long(bytes, at));
-    let level = part(bytes, start?, length?)?;
-    let unpacked = match word(bytes, 44)? {
-        0 => None,
-        SCHEME_ZSTD => Some(decompress(level, size)?),
-        other => return Err(fault(format!("supercompression {other} is not supported"))),
-    };
-    let data = unpacked.as_deref().unwrap_or(level);
-    if data.len() != size {
-        return Err(fault(format!("the level has {} bytes, its size tells of {size}", data.len())));
-    }
-    let keys = part(bytes, word(bytes, 56)?.into(), word(bytes, 60)?.into())?;
-    let provenance = value(keys, ATTRIBUTE.as_bytes()).filter(|t| t.len() <= MAX_TEXT).map(|value| {
-        let value = value.strip_suffix(&[0]).unwrap_or(value);
-        Claim::parse(String::from_utf8_lossy(value).into_owned())
-    });
-    let channels = texels::finish(texels::unpack(data, storage, components, extent), provenance.as_ref());
-    Ok(Image { format: FORMAT, width, height, channels, provenance })
+        channels: texels::finish(planes, provenance.as_ref()),
+        provenance,
+    })
 }
 
 fn part(bytes: &[u8], start: u64, length: u64) -> Result<&[u8], ReadError> {

@@ -118,6 +118,17 @@ pub trait Encoder: Debug + Send + Sync {
     fn is_bare(&self) -> bool {
         false
     }
+    /// True if several tables can be in one file.
+    fn joins(&self) -> bool {
+        self.is_bare()
+    }
+    /// One file of several that it wrote, each with one table.
+    ///
+    /// # Errors
+    /// [`EncodeError`] if they do not go together. Without [`Encoder::joins`] the result is no file of this kind.
+    fn join(&self, files: &[Vec<u8>]) -> Result<Vec<u8>, EncodeError> {
+        Ok(files.concat())
+    }
     /// How its files begin; empty if they cannot be told apart or are not read.
     fn magic(&self) -> &'static [&'static [u8]] {
         &[]
@@ -167,6 +178,12 @@ pub fn encoder(id: &str) -> Option<&'static dyn Encoder> {
 #[must_use]
 pub fn readable() -> Vec<&'static str> {
     ENCODERS.iter().filter(|e| !e.magic().is_empty()).map(|e| e.id()).collect()
+}
+
+/// Bytes of a texel of so many components.
+#[must_use]
+pub const fn texel_size(storage: Storage, components: usize) -> usize {
+    texels::size(storage, components)
 }
 
 /// What goes into a file.

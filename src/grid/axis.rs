@@ -57,7 +57,7 @@ pub struct Axis {
 #[non_exhaustive]
 pub enum AxisError {
     /// The domain is empty, not finite, or outside that of the quantity.
-    #[error("axis {id}: domain [{lo}, {hi}] must be increasing and inside [{min}, {max}]")]
+    #[error("axis {id}: domain [{lo}, {hi}] must be increasing and inside [{min}, {max}], or clamped to it")]
     Domain {
         /// Axis id.
         id: &'static str,
@@ -146,12 +146,14 @@ impl Axis {
         let id = self.quantity.id;
         let [lo, hi] = self.domain;
         let [min, max] = self.quantity.domain;
-        if !(lo.is_finite() && hi.is_finite() && lo < hi && lo >= min && hi <= max) {
+        // values that are clamped before use may be spread over more than the quantity has
+        let [least, most] = self.clamp.unwrap_or(self.domain);
+        if !(lo.is_finite() && hi.is_finite() && lo < hi && least >= min && most <= max) {
             return Err(AxisError::Domain { id, lo, hi, min, max });
         }
-        let least = if self.texel == Texel::Endpoint { 2 } else { 1 };
-        if self.len < least || self.len > 16384 {
-            return Err(AxisError::Length { id, len: self.len, min: least });
+        let shortest = if self.texel == Texel::Endpoint { 2 } else { 1 };
+        if self.len < shortest || self.len > 16384 {
+            return Err(AxisError::Length { id, len: self.len, min: shortest });
         }
         if let Some(fault) = self.warp.fault() {
             return Err(AxisError::Warp { id, fault });

@@ -20,8 +20,8 @@ pub static INFO: ModelInfo = ModelInfo {
     params: &[ALPHA, ALPHA_X, ALPHA_Y, ETA_DIELECTRIC, ACROSS],
     laws: Laws { reciprocal: true, passive: true, isotropic: false },
     notes: "Radiance: light that arrives along wi. f_t is reciprocal as f_t / n_o^2. E is the reflected part; with the transmitted T, the \
-        part of the flux along wo that crosses, E + T <= 1. Single scattering. At eta = 1 nothing is reflected and f_t is a delta, \
-        which has no value.",
+        part of the flux along wo that crosses, E + T <= 1. Single scattering. At eta = 1 there is no interface, and all light goes \
+        straight on.",
     also: &[
         Alias { name: "walter2007_ggx_glass_separable", set: &[("masking", "separable")] },
         Alias { name: "ggx_glass_heightcorr_beta", set: &[("masking", "beta")] },
@@ -68,10 +68,11 @@ pub static INFO: ModelInfo = ModelInfo {
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     let [x, y] = microfacet::alphas(INFO.id, params)?;
+    let eta = params.number("eta");
     Ok(Box::new(Glass {
         distribution: Ggx::new(x, y),
-        flat: x <= 0.0,
-        eta: params.number("eta"),
+        flat: x <= 0.0 || glass::no_interface(eta),
+        eta,
         across: glass::across(params),
     }))
 }

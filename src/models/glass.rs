@@ -40,12 +40,17 @@ const REMEMBERED: f64 = 0.2;
 pub struct Glass<D: Distribution> {
     /// Facet normals.
     pub distribution: D,
-    /// True if the widths are 0: a smooth interface.
+    /// True if the widths are 0, or nothing changes across it: a smooth interface, or none.
     pub flat: bool,
     /// Index below over that above.
     pub eta: f64,
     /// Masking.
     pub across: Across,
+}
+
+/// Is the index the same on both sides? There is nothing then that facets could mask.
+pub(super) fn no_interface(eta: f64) -> bool {
+    (eta - 1.0).abs() == 0.0
 }
 
 /// The masking that the parameters name.

@@ -7,6 +7,7 @@ mod fit;
 pub mod golden;
 mod manifest;
 mod size;
+pub mod suggest;
 mod table;
 mod texels;
 
@@ -14,13 +15,14 @@ pub use event::{Event, Extremum, Progress, Silent};
 pub use manifest::{FileRecord, MANIFEST, Manifest, TableRecord};
 
 use crate::encode::atomic::{self, WriteError};
-use crate::encode::{EncodeError, RangeFault};
+use crate::encode::{self, EncodeError, RangeFault};
 use crate::recipe::{Plan, PlannedTable};
 use crate::tables::driver::BakeError;
 use crate::verify::Finding;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
+use table::Made;
 
 /// Where to write and how many threads to use.
 #[derive(Debug, Clone)]
@@ -172,14 +174,7 @@ pub fn run(
     if !findings.is_empty() {
         return Err(PipelineError::Laws(findings));
     }
-    let mut files: Vec<(String, Vec<u8>)> = Vec::new();
-    for (name, bytes) in made.iter_mut().flat_map(|m| std::mem::take(&mut m.files)) {
-        // tables that name the same file follow each other
-        match files.iter_mut().find(|(other, _)| *other == name) {
-            Some((_, before)) => before.extend(bytes),
-            None => files.push((name, bytes)),
-        }
-    }
+    let files = join(plan, &mut made)?;
     let mut manifest = Manifest::new(plan, made.into_iter().map(|m| m.record).collect());
     manifest.set_sizes(&files);
     let mut files: Vec<(PathBuf, Vec<u8>)> =
@@ -189,6 +184,35 @@ pub fn run(
     let outcome = Outcome { manifest, written: written.written, unchanged: written.unchanged };
     progress.event(&Event::summary(&outcome, start.elapsed().as_secs_f64()));
     Ok(outcome)
+}
+
+/// The files of all tables; those of tables that name the same one are joined, in the order of the tables.
+fn join(plan: &Plan, made: &mut [Made]) -> Result<Vec<(String, Vec<u8>)>, PipelineError> {
+    let mut files: Vec<(String, usize, Vec<Vec<u8>>)> = Vec::new();
+    for (i, made) in made.iter_mut().enumerate() {
+        for (name, bytes) in std::mem::take(&mut made.files) {
+            match files.iter_mut().find(|(other, ..)| *other == name) {
+                Some((_, _, parts)) => parts.push(bytes),
+                None => files.push((name, i, vec![bytes])),
+            }
+        }
+    }
+    let one = |(name, table, mut parts): (String, usize, Vec<Vec<u8>>)| {
+        if parts.len() == 1 {
+            return Ok((name, parts.swap_remove(0)));
+        }
+        let output = plan.tables.get(table).and_then(|t| t.outputs.first());
+        let joined = match output.and_then(|o| encode::encoder(&o.container)) {
+            Some(encoder) => encoder.join(&parts),
+            None => Ok(parts.concat()),
+        };
+        joined.map(|bytes| (name.clone(), bytes)).map_err(|error| PipelineError::Encode {
+            table: plan.tables.get(table).map_or_else(String::new, |t| t.name.clone()),
+            output: name,
+            error,
+        })
+    };
+    files.into_iter().map(one).collect()
 }
 
 /// Names of every file that a plan writes, in order, relative to the output folder.
@@ -215,7 +239,7 @@ pub fn file_names(planned: &PlannedTable) -> Vec<String> {
     outputs
         .iter()
         .map(|o| {
-            let extension = crate::encode::encoder(&o.container).map_or("bin", |e| e.extension());
+            let extension = encode::encoder(&o.container).map_or("bin", |e| e.extension());
             let twice = outputs.iter().filter(|other| other.container == o.container).count() > 1;
             if twice {
                 format!("{}.{}.{extension}", planned.name, o.storage)

@@ -8,6 +8,7 @@
 //! bilinearly and without knowing of an `offset`, against fresh integrals between the texels (`tests/engines.rs`).
 
 use super::{Plan, RecipeError, parse};
+use Reader::{Fixed, Shader};
 
 /// An engine and the tables that it loads.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,10 +19,21 @@ pub struct Engine {
     pub title: &'static str,
     /// The version whose conventions these are, and where they are written.
     pub version: &'static str,
+    /// Can it read other axes?
+    pub reader: Reader,
     /// The text of the recipe.
     pub recipe: &'static str,
     /// The files, in the order of the tables of the recipe.
     pub files: &'static [EngineFile],
+}
+
+/// What reads the tables of an engine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reader {
+    /// A shader in this language, which can be told a warp.
+    Shader(&'static str),
+    /// Something that cannot, and why.
+    Fixed(&'static str),
 }
 
 /// What becomes of a table.
@@ -49,11 +61,12 @@ pub struct Shipped {
 }
 
 macro_rules! engine {
-    ($id:literal, $title:literal, $version:literal, $files:expr) => {
+    ($id:literal, $title:literal, $version:literal, $reader:expr, $files:expr) => {
         Engine {
             id: $id,
             title: $title,
             version: $version,
+            reader: $reader,
             recipe: include_str!(concat!("../../presets/engines/", $id, ".toml")),
             files: $files,
         }
@@ -80,7 +93,15 @@ const FLIPPED: &str = "(mu, 1 - roughness); mix(r, g, F0)";
 const LTC_1: &str =
     "(roughness, sqrt(1 - mu)) (63 / 64) + 0.5 / 64; M^-1 = [[r, 0, b], [0, 1, 0], [g, 0, a]]";
 const LTC_2: &str = "(roughness, sqrt(1 - mu)) (63 / 64) + 0.5 / 64; F0 r + (F90 - F0) g; a at the coordinates of the horizon";
+const OSL_GLASS: &str = "linear in mu, roughness and sqrt((eta - 1.001) / 3.999); 1 - (R + T)";
 const CORNERS: &str = "texel i at i / (n - 1), clamped";
+
+const SHADER_TABLES: &str = "shader.tables at 97dbe6f5, Apache-2.0";
+macro_rules! cycles {
+    ($table:literal, $array:literal) => {
+        file($table, concat!("table_", $array, " in src/scene/shader.tables"), CORNERS)
+    };
+}
 
 const FILAMENT: EngineFile = measured(
     file("filament-dfg", "generated/data/dfg.inc of the build, with DFG_LUT_SIZE = 64", MIX),
@@ -95,17 +116,28 @@ pub static ENGINES: &[Engine] = &[
         "bevy",
         "Bevy",
         "0.20-dev (bevyengine/bevy 4805ca79), crates/bevy_pbr",
-        &[measured(
-            file("bevy-dfg", "crates/bevy_pbr/src/environment_map/dfg.ktx2", SPLIT),
-            "dfg.ktx2 at 4805ca79, MIT or Apache-2.0",
-            [7.581e-2, 4.489e-4],
-            [9.343e-3, 1.318e-4]
-        )]
+        Shader("wgsl"),
+        &[
+            measured(
+                file("bevy-dfg", "crates/bevy_pbr/src/environment_map/dfg.ktx2", SPLIT),
+                "dfg.ktx2 at 4805ca79, MIT or Apache-2.0",
+                [7.581e-2, 4.489e-4],
+                [9.343e-3, 1.318e-4]
+            ),
+            file("bevy-ltc-matrix", "crates/bevy_pbr/src/ltc/ltc.ktx2, layer 0", LTC_1),
+            measured(
+                file("bevy-ltc-magnitude", "crates/bevy_pbr/src/ltc/ltc.ktx2, layer 1", LTC_2),
+                "ltc.ktx2 at 4805ca79, MIT or Apache-2.0",
+                [9.430e-2, 9.129e-4],
+                [3.303e-2, 6.654e-4]
+            ),
+        ]
     ),
     engine!(
         "three",
         "three.js",
         "r187",
+        Shader("glsl"),
         &[
             measured(
                 file("three-dfg", "src/renderers/shaders/DFGLUTData.js", SWAPPED),
@@ -122,17 +154,25 @@ pub static ENGINES: &[Engine] = &[
             ),
         ]
     ),
-    engine!("filament", "Filament", "1.53.4, libs/ibl/src/CubemapIBL.cpp and tools/cmgen", &[FILAMENT]),
+    engine!(
+        "filament",
+        "Filament",
+        "1.53.4, libs/ibl/src/CubemapIBL.cpp and tools/cmgen",
+        Shader("glsl"),
+        &[FILAMENT]
+    ),
     engine!(
         "filament-centre",
         "Filament, rows where its shaders read them",
         "1.53.4, as filament",
+        Shader("glsl"),
         &[FILAMENT]
     ),
     engine!(
         "babylon",
         "Babylon.js",
         "9.34, Misc/brdfTextureTools.js",
+        Shader("glsl"),
         &[
             measured(
                 file(
@@ -160,18 +200,21 @@ pub static ENGINES: &[Engine] = &[
         "unreal",
         "Unreal's split sum, as published",
         "Karis 2013, section 'Environment BRDF'; the engine's own source was not read",
+        Shader("hlsl"),
         &[file("unreal-dfg", "the pre-integrated GF texture", SPLIT)]
     ),
     engine!(
         "gltf-sample-renderer",
         "glTF Sample Renderer",
         "source/Renderer/shaders/ibl.glsl",
+        Shader("glsl"),
         &[file("gltf-ggx", "the picture lut_ggx.png", "(mu, roughness); F0 r + g")]
     ),
     engine!(
         "godot",
         "Godot",
         "4.x, forward_clustered/integrate_dfg.glsl",
+        Shader("glsl"),
         &[file(
             "godot-dfg",
             "the table that the renderer makes at start-up",
@@ -182,6 +225,7 @@ pub static ENGINES: &[Engine] = &[
         "playcanvas",
         "PlayCanvas",
         "src/scene/area-light-luts.js",
+        Shader("glsl"),
         &[
             file("playcanvas-ltc-matrix", "the asset area-light-luts.bin", LTC_1),
             measured(
@@ -196,6 +240,7 @@ pub static ENGINES: &[Engine] = &[
         "selfshadow-ltc",
         "LTC tables of Heitz and Hill",
         "selfshadow/ltc_code 31e5e96b, fit/results",
+        Fixed("the files have many readers"),
         &[
             file("ltc-1", "ltc.js", LTC_1),
             measured(
@@ -210,26 +255,34 @@ pub static ENGINES: &[Engine] = &[
         "cycles",
         "Cycles",
         "blender/cycles 97dbe6f5, src/app/cycles_precompute.cpp",
+        Fixed("lookup_table_read in its kernel steps evenly along every axis of every table"),
         &[
             measured(
-                file("cycles-ggx-E", "table_ggx_E in src/scene/shader.tables", CORNERS),
-                "shader.tables at 97dbe6f5, Apache-2.0",
+                cycles!("cycles-ggx-E", "ggx_E"),
+                SHADER_TABLES,
                 [9.719e-2, 7.247e-4],
                 [6.295e-3, 3.074e-4]
             ),
             measured(
-                file("cycles-ggx-Eavg", "table_ggx_Eavg in src/scene/shader.tables", CORNERS),
-                "shader.tables at 97dbe6f5, Apache-2.0",
+                cycles!("cycles-ggx-Eavg", "ggx_Eavg"),
+                SHADER_TABLES,
                 [2.942e-4, 1.572e-4],
                 [2.942e-4, 1.716e-4]
             ),
-            file("cycles-sheen-ltc", "table_sheen_ltc in src/scene/shader.tables", CORNERS),
+            cycles!("cycles-ggx-glass-E", "ggx_glass_E"),
+            cycles!("cycles-ggx-glass-Eavg", "ggx_glass_Eavg"),
+            cycles!("cycles-ggx-glass-inv-E", "ggx_glass_inv_E"),
+            cycles!("cycles-ggx-glass-inv-Eavg", "ggx_glass_inv_Eavg"),
+            cycles!("cycles-ggx-gen-schlick-ior-s", "ggx_gen_schlick_ior_s"),
+            cycles!("cycles-ggx-gen-schlick-s", "ggx_gen_schlick_s"),
+            cycles!("cycles-sheen-ltc", "sheen_ltc"),
         ]
     ),
     engine!(
         "ltc-sheen",
         "Sheen of Zeltner, Burley and Chiang",
         "tizian/ltc-sheen 92624114, fitting/python",
+        Fixed("the table has many readers"),
         &[file(
             "ltc-sheen-volume",
             "fitting/python/data/ltc_table_sheen_volume.npy",
@@ -240,6 +293,7 @@ pub static ENGINES: &[Engine] = &[
         "unity-hdrp",
         "Unity, High Definition Render Pipeline",
         "Runtime/Material/PreIntegratedFGD",
+        Shader("hlsl"),
         &[file(
             "hdrp-ggx-disney-diffuse",
             "the texture _PreIntegratedFGD_GGXDisneyDiffuse, made at start-up",
@@ -250,6 +304,7 @@ pub static ENGINES: &[Engine] = &[
         "materialx",
         "MaterialX",
         "MaterialXView, ALBEDO_TABLE_SIZE = 128",
+        Shader("glsl"),
         &[file(
             "materialx-albedo",
             "the texture u_albedoTable, made at start-up",
@@ -260,6 +315,7 @@ pub static ENGINES: &[Engine] = &[
         "ogre",
         "OGRE 1.x",
         "14.6, Media/RTShaderLib",
+        Shader("glsl"),
         &[
             file("ogre-dfg", "Media/RTShaderLib/dfgLUTmultiscatter.dds", FLIPPED),
             file("ogre-ltc-matrix", "Media/RTShaderLib/ltc_1.dds", LTC_1),
@@ -267,9 +323,43 @@ pub static ENGINES: &[Engine] = &[
         ]
     ),
     engine!(
+        "ogre-next",
+        "Ogre-Next",
+        "3.0 and later, Components/Hlms/Pbs and Samples/Media/Hlms/Pbs",
+        Shader("hlsl"),
+        &[
+            file(
+                "ogre-next-ltc-matrix",
+                "ltcMatrix0.dds",
+                "(alpha, sqrt(1 - mu)) (63 / 64) + 0.5 / 64; M^-1 = [[r, 0, b], [0, 1, 0], [g, 0, a]]"
+            ),
+            file(
+                "ogre-next-ltc-magnitude",
+                "ltcMatrix1.dds",
+                "(alpha, sqrt(1 - mu)) (63 / 64) + 0.5 / 64; F0 r + (1 - F0) g; a at the coordinates of the horizon"
+            ),
+            file("ogre-next-dfg", "brtfLutDfg.dds", "(mu, 1 - roughness); F0 r + g, diffuse b"),
+        ]
+    ),
+    engine!(
+        "osl",
+        "Open Shading Language, libbsdl",
+        "AcademySoftwareFoundation/OpenShadingLanguage 6fd6c609, src/libbsdl/src/genluts.cpp",
+        Fixed("get_cosine and TabulatedEnergyCurve of libbsdl hold its axes, and average over them"),
+        &[
+            file(
+                "osl-mini-microfacet-ggx",
+                "BSDL/SPI/microfacet_tools_luts.h of the build",
+                "linear between the cosines max((i / 15)^2, 1e-6) and in roughness; 1 - E"
+            ),
+            file("osl-dielectric-front", "BSDL/SPI/bsdf_dielectric_front_luts.h of the build", OSL_GLASS),
+        ]
+    ),
+    engine!(
         "o3de",
         "Open 3D Engine",
         "Atom, BRDFTexture/BRDFTextureCS.azsl",
+        Shader("hlsl"),
         &[file(
             "o3de-dfg",
             "the table that the pass BRDFTexture makes at start-up",

@@ -58,6 +58,7 @@
 //! * **Files of other programs**: with `file`, a table with one output writes a file of that name. In the containers without
 //!   header, `text` and `raw`, `before` and `after` stand round the numbers, and tables that name the same file follow each
 //!   other in it: `file = "lut.h"`, `before = "const float lut[] = {\n"`, `after = "};\n"`.
+//!   In `ktx2`, tables of one file are the layers of an array: they must have one size, storage and options.
 //!
 //! # Faults
 //! All faults of a file are reported at once, in file order, with line, column, key, what was given, what is allowed
@@ -99,15 +100,17 @@ mod read_axis;
 mod section;
 mod sizing;
 mod span;
+mod write;
 
 pub use diagnostic::{Diagnostic, RecipeError};
-pub use engine::{ENGINES, Engine, EngineFile, Shipped, engine};
+pub use engine::{ENGINES, Engine, EngineFile, Reader, Shipped, engine};
 pub use fault::Fault;
 pub use load::{LoadError, load};
 pub use outputs::Output;
 pub use plan::{Plan, PlanError, PlannedTable, TableRequest};
 pub use preset::{PRESETS, Preset, preset};
 pub use sizing::Sizing;
+pub use write::text;
 
 use crate::encode::{ENCODERS, Storage};
 use std::sync::LazyLock;

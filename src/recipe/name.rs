@@ -2,7 +2,7 @@
 
 use super::document::Entry;
 use super::fault::{Fault, Faults, show};
-use crate::encode;
+use crate::encode::{self, Encoder};
 
 /// Most characters of a name.
 const LONGEST: usize = 64;
@@ -49,15 +49,31 @@ fn shared(a: &Entry, file: &str, b: &Entry, theirs: &str) -> Option<String> {
     if !file.eq_ignore_ascii_case(theirs) {
         return None;
     }
-    let joins = |e: &Entry| {
-        let mut outputs = e.outputs.iter().flatten().flatten();
-        e.outputs.is_some() && outputs.all(|o| encode::encoder(&o.container).is_some_and(|e| e.is_bare()))
-    };
-    match () {
-        () if file != theirs => Some("file names must differ by more than case".to_owned()),
-        () if joins(a) && joins(b) => None,
-        () => Some("only containers without a header (raw, text) hold one table behind the other".to_owned()),
+    if file != theirs {
+        return Some("file names must differ by more than case".to_owned());
     }
+    let encoders = |e: &Entry| -> Vec<&'static dyn Encoder> {
+        let outputs = e.outputs.iter().flatten().flatten();
+        outputs.filter_map(|o| encode::encoder(&o.container)).collect()
+    };
+    let all = [encoders(a), encoders(b)];
+    let whole = |ok: fn(&dyn Encoder) -> bool| all.iter().all(|l| !l.is_empty() && l.iter().all(|e| ok(*e)));
+    match () {
+        () if whole(|e| e.is_bare()) => None,
+        () if !whole(|e| e.joins()) => Some(
+            "only containers without a header (raw, text) hold one table behind the other, and ktx2 in layers"
+                .to_owned(),
+        ),
+        () if a.outputs != b.outputs || lengths(a) != lengths(b) => {
+            Some("the layers of a file have one size, storage and options".to_owned())
+        }
+        () => None,
+    }
+}
+
+/// Lengths of the axes, where they are given.
+fn lengths(entry: &Entry) -> Vec<Option<usize>> {
+    entry.axes.iter().flatten().map(|a| a.as_ref().map(|a| a.len)).collect()
 }
 
 fn portable(what: &'static str, name: &str) -> Option<Fault> {

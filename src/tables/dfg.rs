@@ -57,6 +57,12 @@ const DIFFUSE_HDRP: ChannelInfo = ChannelInfo {
     range: [0.5, 1.5],
 };
 
+const DIFFUSE_FROSTBITE: ChannelInfo = ChannelInfo {
+    id: "dfg.diffuse-frostbite",
+    meaning: "int f mu_i dwi of Frostbite's diffuse lobe, colour 1, r = sqrt(alpha)",
+    range: [0.0, 1.04],
+};
+
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
     id: "dfg",
@@ -68,6 +74,7 @@ pub static INFO: TableInfo = TableInfo {
         (cite::ESTEVEZ_KULLA_2017, "Eq. 2 (D of the cloth)"),
         (cite::NEUBELT_PETTINEO_2013, "the visibility of the cloth"),
         (cite::BURLEY_2012, "section 5.3 (the diffuse lobe)"),
+        (cite::LAGARDE_2014, "section 3.1.2 (the diffuse lobe renormalised)"),
     ],
     coordinates: &["mu", "alpha"],
     layouts: &[
@@ -98,7 +105,7 @@ pub static INFO: TableInfo = TableInfo {
             channels: &[FC, TOTAL, DIFFUSE],
         },
     ],
-    mix: Mix::Free(&[F82_X16, DIFFUSE_HDRP]),
+    mix: Mix::Free(&[F82_X16, DIFFUSE_HDRP, DIFFUSE_FROSTBITE]),
     model: ModelUse::Split("ggx"),
     params: &[],
     laws: &["finite", "range", "energy", "split", "cross-check", "reciprocity"],
@@ -152,10 +159,24 @@ struct Lobe {
 
 const CLOTH_LOBE: Lobe =
     Lobe { info: &models::charlie_neubelt::INFO, param: "roughness", from_alpha: |alpha| alpha };
+const FROSTBITE_LOBE: Lobe =
+    Lobe { info: &models::frostbite_diffuse::INFO, param: "r", from_alpha: f64::sqrt };
 const DIFFUSE_LOBE: Lobe = Lobe { info: &models::burley_diffuse::INFO, param: "r", from_alpha: f64::sqrt };
+
+/// What loss and rest decode to, alone or before another channel.
+const DECODED: &[&[ChannelInfo]] = &[
+    &[SCALE, BIAS],
+    &[SCALE, BIAS, F82],
+    &[SCALE, BIAS, F82_X16],
+    &[SCALE, BIAS, CLOTH],
+    &[SCALE, BIAS, DIFFUSE],
+    &[SCALE, BIAS, DIFFUSE_HDRP],
+    &[SCALE, BIAS, DIFFUSE_FROSTBITE],
+];
 
 struct Dfg {
     sweep: Sweep,
+    channels: Vec<&'static str>,
     parts: Vec<Part>,
     /// The functionals of the parts, in order: one pass serves them all.
     functionals: Vec<Functional>,
@@ -171,7 +192,8 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         }
     }
     let (sweep, alpha) = (Sweep::new(spec, true)?, spec.coordinate("alpha")?);
-    Ok(Box::new(Dfg { sweep, parts, functionals, alpha }))
+    let channels = spec.layout.ids().collect();
+    Ok(Box::new(Dfg { sweep, channels, parts, functionals, alpha }))
 }
 
 impl Part {
@@ -195,6 +217,7 @@ fn part(channel: &str) -> Part {
         "dfg.f82-x16" => Part::Split(Functional::F82, 16.0 / schlick::F82_SCALE),
         "dfg.cloth" => Part::Lobe(CLOTH_LOBE),
         "dfg.diffuse" => Part::Lobe(DIFFUSE_LOBE),
+        "dfg.diffuse-frostbite" => Part::Lobe(FROSTBITE_LOBE),
         "dfg.diffuse-hdrp" => Part::Kept(DIFFUSE_LOBE, 1.03571, DIFFUSE_HDRP.range),
         _ => Part::Split(Functional::One, 1.0),
     }
@@ -217,9 +240,11 @@ impl Dfg {
         of(Functional::One).or(sum).map_or(0.0, |least| (least - 1.0).max(0.0))
     }
 
-    /// Loss and rest, in this order and alone.
-    fn factored(&self) -> bool {
-        matches!(self.parts[..], [Part::Loss, Part::Rest])
+    /// What loss and rest, in this order and first, decode to; with one more channel at most.
+    fn factored(&self) -> Option<&'static [ChannelInfo]> {
+        let [Part::Loss, Part::Rest, more @ ..] = &self.parts[..] else { return None };
+        let third = self.channels.get(2).copied();
+        DECODED.iter().copied().find(|d| d.len() == more.len() + 2 && d.get(2).map(|c| c.id) == third)
     }
 }
 
@@ -289,11 +314,11 @@ impl Baker for Dfg {
     }
 
     fn decoded(&self) -> Option<&'static [ChannelInfo]> {
-        self.factored().then_some(&[SCALE, BIAS])
+        self.factored()
     }
 
     fn decode(&self, at: &[f64], values: &mut Sums) {
-        if self.factored() {
+        if self.factored().is_some() {
             let (albedo, mirror) = (1.0 - values[0], schlick::weight(self.sweep.mu(at)));
             let bias = albedo * mirror + values[1];
             (values[0], values[1]) = (albedo - bias, bias);

@@ -55,6 +55,10 @@ impl Syntax for Glsl {
         format!("min({i}, {last})")
     }
 
+    fn vector(&self, components: usize) -> Option<&'static str> {
+        ["float", "vec2", "vec3", "vec4"].get(components.checked_sub(1)?).copied()
+    }
+
     fn file(&self, p: &Parts<'_>) -> String {
         let (name, count) = (p.name, p.count);
         let kind = ["float", "vec2", "vec3", "vec4"][p.results.len().clamp(1, 4) - 1];

@@ -43,6 +43,10 @@ impl Syntax for Hlsl {
         Glsl.least(i, last)
     }
 
+    fn vector(&self, components: usize) -> Option<&'static str> {
+        ["float", "float2", "float3", "float4"].get(components.checked_sub(1)?).copied()
+    }
+
     fn file(&self, p: &Parts<'_>) -> String {
         let (name, count) = (p.name, p.count);
         let kind = ["float", "float2", "float3", "float4"][p.results.len().clamp(1, 4) - 1];

@@ -16,6 +16,7 @@ mod glsl;
 mod hlsl;
 mod js;
 mod program;
+pub mod reader;
 mod rust;
 mod wgsl;
 
@@ -71,6 +72,25 @@ pub trait Syntax: Debug + Send + Sync + 'static {
     fn widen(&self, i: &str, double: bool) -> String;
     /// The smaller of an index and a number.
     fn least(&self, i: &str, last: usize) -> String;
+    /// The type of so many numbers; none in languages that do not read textures.
+    fn vector(&self, components: usize) -> Option<&'static str> {
+        let _ = components;
+        None
+    }
+    /// A function of named arguments with so many components, in a language with vectors.
+    #[doc(hidden)]
+    fn function(&self, f: &reader::Lines) -> Option<String> {
+        let kind = self.vector(f.results.len())?;
+        let arguments: Option<Vec<String>> =
+            f.arguments.iter().map(|(name, n)| Some(format!("{} {name}", self.vector(*n)?))).collect();
+        Some(format!(
+            "{kind} {}({}) {{\n{}    return {kind}({});\n}}\n",
+            f.name,
+            arguments?.join(", "),
+            f.body,
+            f.results.join(", ")
+        ))
+    }
     /// The file, but for the comments above it.
     #[doc(hidden)]
     fn file(&self, parts: &Parts<'_>) -> String;

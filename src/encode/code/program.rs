@@ -30,17 +30,7 @@ impl Program<'_> {
     /// The program of a table; refused if an axis sweeps a quantity whose map to its base is not known here.
     pub(super) fn new<'a>(input: &EncodeInput<'a>) -> Result<Program<'a>, EncodeError> {
         let axes = input.grid.axes();
-        let mut indices = Vec::new();
-        for axis in axes {
-            let coupled = match axis.warp.couples_to() {
-                None => Expression::Number(0.0),
-                Some(base) => match axes.iter().find(|a| a.quantity.base_id() == base) {
-                    Some(other) => to_base(other)?,
-                    None => Expression::name(base),
-                },
-            };
-            indices.push(index(axis, coupled));
-        }
+        let indices = indices(axes, false)?;
         Ok(Program {
             name: identifier(input.provenance_json),
             arguments: axes.iter().map(|a| a.quantity.id).collect(),
@@ -139,6 +129,26 @@ fn offset(corner: usize, channel: usize) -> String {
     if channel == 0 { format!("a{corner}") } else { format!("a{corner} + {channel}") }
 }
 
+/// Fractional index on each axis; refused if one sweeps a quantity whose map to its base is not known here.
+/// `clamped`: what lies outside of a domain counts as its end in couplings too.
+pub(super) fn indices(axes: &[Axis], clamped: bool) -> Result<Vec<Expression>, EncodeError> {
+    let one = |axis: &Axis| {
+        let coupled = match axis.warp.couples_to() {
+            None => Expression::Number(0.0),
+            Some(base) => match axes.iter().find(|a| a.quantity.base_id() == base) {
+                Some(other) if clamped => {
+                    let [lo, hi] = other.domain;
+                    to_base(other, Expression::name(other.quantity.id).clamp(lo, hi))?
+                }
+                Some(other) => to_base(other, Expression::name(other.quantity.id))?,
+                None => Expression::name(base),
+            },
+        };
+        Ok(index(axis, coupled))
+    };
+    axes.iter().map(one).collect()
+}
+
 /// [`Axis::index`] as an expression, clamped to the texels.
 fn index(axis: &Axis, coupled: Expression) -> Expression {
     use Expression::Number;
@@ -164,9 +174,8 @@ fn index(axis: &Axis, coupled: Expression) -> Expression {
     place.clamp(0.0, last)
 }
 
-/// The base quantity of an axis, from its argument.
-fn to_base(axis: &Axis) -> Result<Expression, EncodeError> {
-    let v = Expression::name(axis.quantity.id);
+/// The base quantity of an axis, from its own.
+fn to_base(axis: &Axis, v: Expression) -> Result<Expression, EncodeError> {
     let one = || Expression::Number(1.0);
     match axis.quantity.id {
         id if id == axis.quantity.base_id() => Ok(v),
@@ -180,7 +189,11 @@ fn to_base(axis: &Axis) -> Result<Expression, EncodeError> {
 /// The name of the table as an identifier of every language.
 fn identifier(provenance: &str) -> String {
     let json: serde_json::Value = serde_json::from_str(provenance).unwrap_or_default();
-    let name = json["name"].as_str().unwrap_or_default();
+    name_of(json["name"].as_str().unwrap_or_default())
+}
+
+/// A name as an identifier of every language.
+pub(super) fn name_of(name: &str) -> String {
     let mut id: String = name
         .chars()
         .take(64)

@@ -1,6 +1,6 @@
 //! WGSL: a module constant and a function.
 
-use super::{Call, Parts, Syntax, glsl};
+use super::{Call, Parts, Syntax, glsl, reader};
 
 /// The language. See the module.
 #[derive(Debug, Clone, Copy)]
@@ -41,6 +41,23 @@ impl Syntax for Wgsl {
 
     fn least(&self, i: &str, last: usize) -> String {
         format!("min({i}, {last})")
+    }
+
+    fn vector(&self, components: usize) -> Option<&'static str> {
+        ["f32", "vec2<f32>", "vec3<f32>", "vec4<f32>"].get(components.checked_sub(1)?).copied()
+    }
+
+    fn function(&self, f: &reader::Lines) -> Option<String> {
+        let kind = self.vector(f.results.len())?;
+        let arguments: Option<Vec<String>> =
+            f.arguments.iter().map(|(name, n)| Some(format!("{name}: {}", self.vector(*n)?))).collect();
+        Some(format!(
+            "fn {}({}) -> {kind} {{\n{}    return {kind}({});\n}}\n",
+            f.name,
+            arguments?.join(", "),
+            f.body,
+            f.results.join(", ")
+        ))
     }
 
     fn file(&self, p: &Parts<'_>) -> String {

@@ -1,0 +1,105 @@
+//! `bake --engine NAME --suggest`: prints what `pipeline::suggest` finds.
+
+use super::progress::Format;
+use super::{Exit, Failure, output};
+use crate::pipeline::PipelineError;
+use crate::pipeline::suggest::{self, Size, Suggestion, Want};
+use crate::recipe::{Engine, Plan};
+use std::sync::atomic::AtomicBool;
+
+/// Where an error must hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Domain {
+    /// Everywhere.
+    Whole,
+    /// Where mu >= 0.05 and roughness >= 0.09.
+    Practical,
+}
+
+/// Longest axis of a suggested table.
+const LONGEST: usize = 256;
+
+/// Errors that can be asked for.
+const ERRORS: std::ops::RangeInclusive<f64> = 1e-7..=0.5;
+
+/// Runs it: exit code 4 if an error is out of reach for some table.
+///
+/// # Errors
+/// [`Failure`] for an error out of range, an interrupted run, or a table that cannot be baked.
+pub(super) fn run(
+    engine: &Engine,
+    plan: &Plan,
+    error: f64,
+    domain: Domain,
+    jobs: Option<usize>,
+    format: Format,
+    cancel: &AtomicBool,
+) -> Result<Exit, Failure> {
+    if !ERRORS.contains(&error) {
+        return Err(Failure::usage(format!(
+            "--suggest {error} outside {:e} to {}",
+            ERRORS.start(),
+            ERRORS.end()
+        )));
+    }
+    let want = Want { error, practical: domain == Domain::Practical, longest: LONGEST };
+    let jobs = jobs.unwrap_or(0);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(jobs)
+        .build()
+        .map_err(|e| PipelineError::Threads { jobs, message: e.to_string() })?;
+    let all = pool.install(|| suggest::suggest(engine, plan, want, cancel))?;
+    for suggestion in &all {
+        match format {
+            Format::Json => output::data(&json(suggestion)),
+            Format::Human => output::data(&page(engine, suggestion)),
+        }
+    }
+    // what was not searched is no failure
+    let failed = all.iter().any(|s| s.own.is_some() && s.found.is_none());
+    Ok(if failed { Exit::Failed } else { Exit::Done })
+}
+
+fn json(suggestion: &Suggestion) -> String {
+    let mut line = serde_json::Map::new();
+    line.insert("reason".to_owned(), "suggestion".into());
+    if let Ok(serde_json::Value::Object(fields)) = serde_json::to_value(suggestion) {
+        line.extend(fields);
+    }
+    serde_json::Value::Object(line).to_string()
+}
+
+fn page(engine: &Engine, suggestion: &Suggestion) -> String {
+    let mut text = format!("{}: {}\n", engine.title, suggestion.table);
+    if let Some(own) = &suggestion.own {
+        text.push_str(&format!("  the engine's: {}\n", size(own)));
+    }
+    if let Some(found) = &suggestion.found {
+        text.push_str(&format!("  suggested:    {}\n", size(&found.size)));
+    }
+    for note in &suggestion.notes {
+        text.push_str(&format!("  {note}\n"));
+    }
+    if let Some(found) = &suggestion.found {
+        text.push_str(&format!(
+            "\nrecipe:\n\n{}\nshader, {}:\n\n{}",
+            found.recipe,
+            found.language.to_uppercase(),
+            found.lines
+        ));
+    }
+    text
+}
+
+fn size(size: &Size) -> String {
+    let texels: Vec<String> = size.texels.iter().map(ToString::to_string).collect();
+    let errors = |[largest, mean]: [f64; 2]| format!("{largest:.1e} at most, {mean:.1e} in the mean");
+    let practical = size.practical.map_or_else(String::new, |p| format!("; practical domain {}", errors(p)));
+    format!(
+        "{} {}, {} bytes of texels, off by {}{practical}",
+        texels.join(" x "),
+        size.output,
+        size.bytes,
+        errors(size.whole)
+    )
+}

@@ -1,0 +1,289 @@
+//! `bake --engine NAME --suggest`: the smallest table that an engine could read instead of its own, for an error.
+//!
+//! An engine whose shader can be told new lines is not bound to its axes. For each of its split sums the search of
+//! `size` runs over the warps of both axes, for the channels that the shader reads now and, in floats, for the
+//! layout `factored`, which both decode to the same. What takes the fewest bytes is written as a recipe, and that
+//! recipe is baked and measured: the numbers are those of the text that is printed.
+
+use super::{PipelineError, Silent, size, table};
+use crate::encode::code::reader::{self, Decode};
+use crate::encode::{self, Storage};
+use crate::grid::provenance::Reconstruction;
+use crate::grid::{Axis, Direction, Grid, Texel, Warp};
+use crate::models::Params;
+use crate::recipe::{self, Engine, Output, Plan, PlannedTable, Reader, Sizing, TableRequest};
+use crate::tables::ModelUse;
+use crate::tables::spec::Request;
+use serde::Serialize;
+use std::sync::atomic::AtomicBool;
+
+/// Least roughness of a suggested table: below, a mirror begins, which no texel can follow. Shaders clamp there or above.
+const LEAST_ROUGHNESS: f64 = 0.01;
+
+/// Part of the error that integration may have.
+const SHARE: f64 = 0.02;
+
+/// What is taken where the engine's own storage is too coarse.
+const FINER: &str = "ktx2";
+
+/// What is asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Want {
+    /// Largest error as a shader reads it.
+    pub error: f64,
+    /// Only where mu >= 0.05 and roughness >= 0.09?
+    pub practical: bool,
+    /// Longest axis to try.
+    pub longest: usize,
+}
+
+/// A table, what it takes, and how it reads.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Size {
+    /// Texels along the axes.
+    pub texels: Vec<usize>,
+    /// Container, storage and options.
+    pub output: String,
+    /// Bytes of the texels, before any supercompression.
+    pub bytes: usize,
+    /// Bytes of the file.
+    pub file_bytes: u64,
+    /// Largest and mean error over the whole domain of the table.
+    pub whole: [f64; 2],
+    /// The same where mu >= 0.05 and roughness >= 0.09.
+    pub practical: Option<[f64; 2]>,
+}
+
+/// The table that was found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Found {
+    /// What it takes and how it reads.
+    pub size: Size,
+    /// The recipe that bakes it.
+    pub recipe: String,
+    /// Language of the lines.
+    pub language: &'static str,
+    /// Lines that turn mu and roughness into texture coordinates, and the texel into values.
+    pub lines: String,
+}
+
+/// What is suggested for one table of an engine.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Suggestion {
+    /// Name of the table.
+    pub table: String,
+    /// The engine's own, baked by this program.
+    pub own: Option<Size>,
+    /// The table in its place.
+    pub found: Option<Found>,
+    /// Why there is none; or what to know of it.
+    pub notes: Vec<String>,
+}
+
+/// Suggestions for every table of an engine, in order. Nothing is written.
+///
+/// # Errors
+/// [`PipelineError`] for a cancelled run or a table that cannot be baked. An error out of reach is no failure: the
+/// suggestion then says what was reached.
+pub fn suggest(
+    engine: &Engine,
+    plan: &Plan,
+    want: Want,
+    cancel: &AtomicBool,
+) -> Result<Vec<Suggestion>, PipelineError> {
+    plan.tables.iter().enumerate().map(|(i, planned)| one(engine, plan, planned, i, want, cancel)).collect()
+}
+
+fn one(
+    engine: &Engine,
+    plan: &Plan,
+    planned: &PlannedTable,
+    index: usize,
+    want: Want,
+    cancel: &AtomicBool,
+) -> Result<Suggestion, PipelineError> {
+    let mut result = Suggestion { table: planned.name.clone(), own: None, found: None, notes: Vec::new() };
+    let language = match (engine.reader, planned.bound.spec.kind.id) {
+        (Reader::Fixed(why), _) => {
+            result.notes.push(format!("its reader cannot be told another axis: {why}"));
+            return Ok(result);
+        }
+        (Reader::Shader(_), kind) if kind != "dfg" => {
+            result.notes.push(format!("a table of kind {kind} has no error between texels to search by"));
+            return Ok(result);
+        }
+        (Reader::Shader(language), _) => language,
+    };
+    let own = table::make(plan, planned, index, cancel, &Silent)?;
+    result.own = measured(&own, planned);
+    let search = Search { planned, want, language, cancel };
+    let output = planned.outputs.first().cloned().unwrap_or_else(|| Output::new(FINER, "half"));
+    let mut least = f64::INFINITY;
+    result.found = search.best(&output, &mut least)?;
+    let float = |o: &Output| ["half", "float", "double"].contains(&o.storage.as_str());
+    if result.found.is_none() && !float(&output) {
+        let mut finer = Output::new(FINER, "half");
+        if planned.bound.spec.layout.channels.len() == 3 {
+            finer.options.push("rgba".to_owned());
+        }
+        result.notes.push(format!("{output} reaches {least:.1e}: stored as {finer} instead"));
+        result.found = search.best(&finer, &mut least)?;
+    }
+    if result.found.is_none() {
+        let domain = if want.practical { "practical" } else { "whole" };
+        let (longest, error) = (want.longest, want.error);
+        result.notes.push(format!(
+            "no table with axes up to {longest} reads to within {error:e} over the {domain} domain; the best reached {least:.1e}"
+        ));
+    } else {
+        result.notes.push(format!("roughness below {LEAST_ROUGHNESS} reads as {LEAST_ROUGHNESS}"));
+    }
+    Ok(result)
+}
+
+struct Search<'a> {
+    planned: &'a PlannedTable,
+    want: Want,
+    language: &'static str,
+    cancel: &'a AtomicBool,
+}
+
+impl Search<'_> {
+    /// The smallest of all candidates; `least` becomes the least error of those that fail.
+    fn best(&self, output: &Output, least: &mut f64) -> Result<Option<Found>, PipelineError> {
+        let mut best: Option<Found> = None;
+        for (channels, decode) in candidates(self.planned, output) {
+            let found = match self.sized(channels, output) {
+                Ok(request) => self.bake(&request, decode)?,
+                Err(PipelineError::Size { reached, .. }) => {
+                    *least = least.min(reached);
+                    continue;
+                }
+                Err(e) => return Err(e),
+            };
+            let Some(found) = found else { continue };
+            if best.as_ref().is_none_or(|b| found.size.bytes < b.size.bytes) {
+                best = Some(found);
+            }
+        }
+        Ok(best)
+    }
+
+    /// A request of the size and with the warps that the search finds.
+    fn sized(&self, channels: Vec<String>, output: &Output) -> Result<TableRequest, PipelineError> {
+        let sizing = Sizing {
+            error: self.want.error,
+            practical: self.want.practical,
+            warps: true,
+            longest: self.want.longest,
+            axes: vec![0, 1],
+        };
+        let mut request = TableRequest::new(self.planned.name.clone(), request(self.planned, channels));
+        request.outputs = vec![output.clone()];
+        request.tolerance = Some((SHARE * self.want.error).max(1e-12));
+        let open = TableRequest { size: Some(sizing.clone()), ..request.clone() };
+        let plan = Plan::from_requests("suggested", vec![open]).map_err(|e| self.fault(&e))?;
+        let planned = plan.tables.first().ok_or_else(|| self.fault(&"no table"))?;
+        let found = size::resolve(planned, &sizing, self.cancel)?;
+        request.request.axes = Some(found.bound.spec.grid.axes().to_vec());
+        Ok(request)
+    }
+
+    /// Bakes the text of a recipe; none if it reads worse than asked for after all.
+    fn bake(&self, request: &TableRequest, decode: Decode) -> Result<Option<Found>, PipelineError> {
+        let text = recipe::text("suggested", request);
+        let plan = recipe::parse(&text, "suggested.toml").map_err(|e| self.fault(&e))?;
+        let planned = plan.tables.first().ok_or_else(|| self.fault(&"no table"))?;
+        let made = table::make(&plan, planned, 0, self.cancel, &Silent)?;
+        let Some(size) = measured(&made, planned) else { return Ok(None) };
+        let reached = if self.want.practical { size.practical.unwrap_or(size.whole) } else { size.whole };
+        if reached[0] > self.want.error {
+            return Ok(None);
+        }
+        let spec = &planned.bound.spec;
+        let channels: Vec<&str> = spec.layout.ids().collect();
+        let lines = reader::lines(&planned.name, &spec.grid, &channels, decode, self.language)
+            .map_err(|e| self.fault(&e))?;
+        Ok(Some(Found { size, recipe: text, language: self.language, lines }))
+    }
+
+    fn fault(&self, error: &dyn std::fmt::Display) -> PipelineError {
+        PipelineError::SizeGrid { table: self.planned.name.clone(), message: error.to_string() }
+    }
+}
+
+/// Channels to try: those that are read now, and in floats loss and rest in place of the first two.
+fn candidates(planned: &PlannedTable, output: &Output) -> Vec<(Vec<String>, Decode)> {
+    let own: Vec<String> = planned.bound.spec.layout.ids().map(str::to_owned).collect();
+    let mut all = vec![(own.clone(), Decode::Plain)];
+    let decode = match own.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["dfg.scale", "dfg.bias", ..] => Decode::ScaleBias,
+        ["dfg.fc", "dfg.total", ..] => Decode::Multiscatter,
+        _ => return all,
+    };
+    if Storage::find(&output.storage).is_some_and(|s| !s.is_bounded()) && output.storage != "rgbd" {
+        let mut factored = own;
+        factored.splice(0..2, ["dfg.loss", "dfg.rest"].map(str::to_owned));
+        all.push((factored, decode));
+    }
+    all
+}
+
+/// The same integrals over the same quantities, on plain axes.
+fn request(planned: &PlannedTable, channels: Vec<String>) -> Request {
+    let spec = &planned.bound.spec;
+    let axes = spec.grid.axes().iter().map(plain).collect();
+    let mut params = spec.params.to_json(&spec.swept());
+    let model = spec.model.as_ref().map(|(info, given)| {
+        let defaults = Params::resolve(info.id, info.params, []).map(|p| p.to_json(&[])).unwrap_or_default();
+        let split = matches!(spec.kind.model, ModelUse::Split(_));
+        for (key, value) in given.to_json(&spec.swept()) {
+            let fixed = split && ["f0", "f90"].contains(&key.as_str());
+            if !fixed && defaults.get(&key) != Some(&value) {
+                params.insert(key, value);
+            }
+        }
+        info.id.to_owned()
+    });
+    Request {
+        kind: spec.kind.id.to_owned(),
+        layout: None,
+        channels: Some(channels),
+        model,
+        params,
+        axes: Some(axes),
+    }
+}
+
+fn plain(axis: &Axis) -> Axis {
+    let mut plain = axis.clone();
+    plain.warp = Warp::Linear;
+    plain.texel = Texel::Endpoint;
+    plain.direction = Direction::Ascending;
+    (plain.offset, plain.clamp) = (0.0, None);
+    let least = match axis.quantity.id {
+        "roughness" => LEAST_ROUGHNESS,
+        "alpha" => LEAST_ROUGHNESS * LEAST_ROUGHNESS,
+        _ => axis.domain[0],
+    };
+    plain.domain[0] = plain.domain[0].max(least);
+    plain
+}
+
+/// What a table takes, and how it reads; none if that was not measured.
+fn measured(made: &table::Made, planned: &PlannedTable) -> Option<Size> {
+    let record = made.record.files.first()?;
+    let read: &Reconstruction = record.as_read.as_ref().or(record.reconstruction.as_ref())?;
+    let output = planned.outputs.first()?;
+    let grid: &Grid = &planned.bound.spec.grid;
+    let storage = Storage::find(&output.storage)?;
+    let components = planned.bound.spec.layout.channels.len() + record.encoding.fill.len();
+    Some(Size {
+        texels: made.record.size.clone(),
+        output: output.to_string(),
+        bytes: grid.len() * encode::texel_size(storage, components),
+        file_bytes: record.bytes,
+        whole: [read.whole.largest.value, read.whole.mean],
+        practical: read.practical.as_ref().map(|p| [p.largest.value, p.mean]),
+    })
+}
