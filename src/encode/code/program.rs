@@ -30,17 +30,7 @@ impl Program<'_> {
     /// The program of a table; refused if an axis sweeps a quantity whose map to its base is not known here.
     pub(super) fn new<'a>(input: &EncodeInput<'a>) -> Result<Program<'a>, EncodeError> {
         let axes = input.grid.axes();
-        let mut indices = Vec::new();
-        for axis in axes {
-            let coupled = match axis.warp.couples_to() {
-                None => Expression::Number(0.0),
-                Some(base) => match axes.iter().find(|a| a.quantity.base_id() == base) {
-                    Some(other) => to_base(other)?,
-                    None => Expression::name(base),
-                },
-            };
-            indices.push(index(axis, coupled));
-        }
+        let indices = axes.iter().zip(coordinates(axes)?).map(|(axis, x)| index(axis, x)).collect();
         Ok(Program {
             name: identifier(input.provenance_json),
             arguments: axes.iter().map(|a| a.quantity.id).collect(),
@@ -139,8 +129,23 @@ fn offset(corner: usize, channel: usize) -> String {
     if channel == 0 { format!("a{corner}") } else { format!("a{corner} + {channel}") }
 }
 
-/// [`Axis::index`] as an expression, clamped to the texels.
-fn index(axis: &Axis, coupled: Expression) -> Expression {
+/// Axis coordinates in [0, 1] as expressions in the axes' own quantities; refused if a quantity has no map to its base here.
+pub(crate) fn coordinates(axes: &[Axis]) -> Result<Vec<Expression>, EncodeError> {
+    let one = |axis: &Axis| {
+        let coupled = match axis.warp.couples_to() {
+            None => Expression::Number(0.0),
+            Some(base) => match axes.iter().find(|a| a.quantity.base_id() == base) {
+                Some(other) => to_base(other)?,
+                None => Expression::name(base),
+            },
+        };
+        Ok(coordinate(axis, coupled))
+    };
+    axes.iter().map(one).collect()
+}
+
+/// The axis coordinate of a value, clamped to the domain.
+fn coordinate(axis: &Axis, coupled: Expression) -> Expression {
     use Expression::Number;
     let [lo, hi] = axis.domain;
     let v = Expression::name(axis.quantity.id).minus(Number(lo)).over(Number(hi - lo)).clamp(0.0, 1.0);
@@ -155,7 +160,12 @@ fn index(axis: &Axis, coupled: Expression) -> Expression {
             ratio.pow(1.0 / power)
         }
     };
-    let x = if axis.direction == Direction::Descending { Number(1.0).minus(x) } else { x };
+    if axis.direction == Direction::Descending { Number(1.0).minus(x) } else { x }
+}
+
+/// [`Axis::index`] as an expression, clamped to the texels.
+fn index(axis: &Axis, x: Expression) -> Expression {
+    use Expression::Number;
     let last = count(axis.len - 1);
     let place = match axis.texel {
         Texel::Center => x.times(Number(count(axis.len))).minus(Number(0.5 + axis.offset)),
