@@ -1,10 +1,11 @@
 //! Rational functions of one or two variables with the least largest error.
 //!
 //! Fitted is `base + factor (P / Q)^power`, P and Q polynomials, Q with the constant term 1. A start by linearised least
-//! squares, reweighted by 1 / Q of the step before (Sanathanan and Koerner); then steps of Levenberg and Marquardt on the
-//! error itself, of which those are refused that bring Q near zero, while Lawson's weights, which grow with the error at
-//! each point, turn the sum of squares into the largest error. The best of all steps is kept.
-//! Everything is summed in the order of the points.
+//! squares, reweighted by 1 / Q of the step before ([Sanathanan and Koerner](crate::cite::SANATHANAN_KOERNER_1963)); then
+//! damped steps on the error itself ([Marquardt](crate::cite::MARQUARDT_1963)), of which those are refused that bring Q near
+//! zero, while weights that grow with the error at each point (Lawson's, as in
+//! [Nakatsukasa and Trefethen](crate::cite::NAKATSUKASA_TREFETHEN_2020)) turn the sum of squares into the largest error. The
+//! best of all steps is kept. Everything is summed in the order of the points.
 
 use crate::math::least_squares::{least_squares, positive};
 
@@ -71,6 +72,9 @@ impl Fitted {
 /// if there are fewer points than coefficients.
 #[must_use]
 pub fn fit(points: &[Point], terms: &Terms, power: usize, steps: usize) -> Option<Fitted> {
+    if points.len() < terms.above.len() + terms.below.len() {
+        return None;
+    }
     let problem = Problem::new(points, terms, power);
     let mut c = problem.start()?;
     let mut now = problem.values(&c)?;

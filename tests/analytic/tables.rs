@@ -17,7 +17,7 @@ fn an_albedo_agrees_with_the_closed_form() {
     let bound = request("albedo", "e", "{}", axes);
     let fit = table(&bound, Form::Rational, 3).unwrap();
     eprintln!("{} operations, {:?}", fit.operations(), fit.whole);
-    assert!(fit.largest(false) < 0.03 && fit.largest(true) < fit.largest(false));
+    assert!(fit.largest(false) < 0.06 && fit.largest(true) < 0.02, "{:?}", fit.practical);
     for i in 1..=100 {
         let mu = f64::from(i) / 100.0;
         let e = 1.0 - mu * libm::log((1.0 + mu) / mu);
