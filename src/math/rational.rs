@@ -106,9 +106,11 @@ pub fn fit(points: &[Point], terms: &Terms, power: usize, steps: usize) -> Optio
 struct Problem<'a> {
     points: &'a [Point],
     power: usize,
-    /// Terms of P and of Q at each point.
-    above: Vec<Vec<f64>>,
-    below: Vec<Vec<f64>>,
+    /// Terms of P, and of P and Q together.
+    above: usize,
+    all: usize,
+    /// Their values, point after point.
+    table: Vec<f64>,
 }
 
 /// P / Q and Q at each point.
@@ -116,19 +118,24 @@ type Values = Vec<[f64; 2]>;
 
 impl Problem<'_> {
     fn new<'a>(points: &'a [Point], terms: &Terms, power: usize) -> Problem<'a> {
-        let table = |list: &[Term]| -> Vec<Vec<f64>> {
-            points.iter().map(|p| list.iter().map(|t| monomial(p.at, *t)).collect()).collect()
-        };
-        Problem { points, power, above: table(&terms.above), below: table(&terms.below) }
+        let list = || terms.above.iter().chain(&terms.below);
+        let table = points.iter().flat_map(|p| list().map(|t| monomial(p.at, *t))).collect();
+        Problem { points, power, above: terms.above.len(), all: list().count(), table }
+    }
+
+    /// Terms of P and of Q at each point.
+    fn rows(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
+        self.table.chunks_exact(self.all.max(1)).map(|row| row.split_at(self.above))
     }
 
     /// None if a denominator is too near zero.
     fn values(&self, c: &[f64]) -> Option<Values> {
-        let value = |(p, q): (&Vec<f64>, &Vec<f64>)| {
-            let below = 1.0 + dot(q, &c[p.len()..]);
-            (below > LEAST_Q).then(|| [dot(p, &c[..p.len()]) / below, below])
+        let (above, below) = c.split_at(self.above);
+        let value = |(p, q): (&[f64], &[f64])| {
+            let under = 1.0 + dot(q, below);
+            (under > LEAST_Q).then(|| [dot(p, above) / under, under])
         };
-        self.above.iter().zip(&self.below).map(value).collect()
+        self.rows().map(value).collect()
     }
 
     fn difference(&self, point: &Point, ratio: f64) -> f64 {
@@ -142,15 +149,15 @@ impl Problem<'_> {
 
     /// Linearised: P - t (Q - 1) = t, weighted by 1 / Q of the step before, with a pull of Q towards 1 while it has a zero.
     fn start(&self) -> Option<Vec<f64>> {
-        let (n, m) = (self.above.first()?.len(), self.below.first()?.len());
+        let (n, all) = (self.above, self.all);
         let targets: Vec<f64> = self.points.iter().map(|p| self.target(p)).collect();
         let mut rows: Vec<Vec<f64>> = Vec::new();
-        for ((p, q), t) in self.above.iter().zip(&self.below).zip(&targets) {
+        for ((p, q), t) in self.rows().zip(&targets) {
             rows.push(p.iter().copied().chain(q.iter().map(|q| -t * q)).collect());
         }
         let mut right = targets.clone();
-        for j in n..n + m {
-            rows.push((0..n + m).map(|k| f64::from(u8::from(k == j))).collect());
+        for j in n..all {
+            rows.push((0..all).map(|k| f64::from(u8::from(k == j))).collect());
             right.push(0.0);
         }
         let slope = |(p, t): (&Point, &f64)| {
@@ -197,26 +204,7 @@ impl Problem<'_> {
         damping: &mut f64,
     ) -> Option<(Vec<f64>, Values)> {
         let n = c.len();
-        let mut gram = vec![vec![0.0; n]; n];
-        let mut slope = vec![0.0; n];
-        let mut square = 0.0;
-        let mut row = vec![0.0; n];
-        for (i, point) in self.points.iter().enumerate() {
-            let [ratio, below] = now[i];
-            let outer = weights[i] * point.factor * self.power as f64 * raised(ratio, self.power - 1) / below;
-            let (p, q) = (&self.above[i], &self.below[i]);
-            row.iter_mut()
-                .zip(p.iter().copied().chain(q.iter().map(|q| -ratio * q)))
-                .for_each(|(r, t)| *r = outer * t);
-            let error = weights[i] * self.difference(point, ratio);
-            square += error * error;
-            for j in 0..n {
-                slope[j] -= row[j] * error;
-                for k in 0..=j {
-                    gram[j][k] += row[j] * row[k];
-                }
-            }
-        }
+        let (gram, slope, square) = self.normal(now, weights);
         let scale: Vec<f64> = (0..n).map(|j| 1.0 / (gram[j][j].sqrt() + 1e-30)).collect();
         for _ in 0..TRIALS {
             let damped: Vec<Vec<f64>> = (0..n)
@@ -246,6 +234,29 @@ impl Problem<'_> {
         }
         *damping = 1e-4;
         None
+    }
+
+    /// Lower half of the normal matrix of the derivatives by the coefficients, their product with the errors, and the square of those.
+    fn normal(&self, now: &Values, weights: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>, f64) {
+        let mut gram: Vec<Vec<f64>> = (0..self.all).map(|j| vec![0.0; j + 1]).collect();
+        let mut slope = vec![0.0; self.all];
+        let mut square = 0.0;
+        let mut row = vec![0.0; self.all];
+        for (((point, weight), [ratio, under]), (p, q)) in
+            self.points.iter().zip(weights).zip(now).zip(self.rows())
+        {
+            let outer = weight * point.factor * self.power as f64 * raised(*ratio, self.power - 1) / under;
+            let (above, below) = row.split_at_mut(self.above);
+            above.iter_mut().zip(p).for_each(|(r, p)| *r = outer * p);
+            below.iter_mut().zip(q).for_each(|(r, q)| *r = -outer * ratio * q);
+            let error = weight * self.difference(point, *ratio);
+            square += error * error;
+            for ((line, slope), r) in gram.iter_mut().zip(&mut slope).zip(&row) {
+                *slope -= r * error;
+                line.iter_mut().zip(&row).for_each(|(g, s)| *g += r * s);
+            }
+        }
+        (gram, slope, square)
     }
 }
 

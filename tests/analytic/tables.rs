@@ -70,7 +70,7 @@ fn what_cannot_be_fitted_is_refused() {
 fn the_code_does_not_depend_on_the_number_of_threads() {
     let code = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| of("sheen-scaling", "e", Form::Rational, 2).code(Lang::Glsl))
+        pool.install(|| of("fresnel-dielectric", "polarised", Form::Rational, 2).code(Lang::Glsl))
     };
     assert_eq!(code(1), code(3));
 }
