@@ -99,8 +99,9 @@ pub fn split_sum(bound: &Bound, degree: usize) -> Result<Fit, FitError> {
     let albedo = Albedo::new(&fitted, terms(parts.e)).ok_or_else(pole)?;
     let (k_terms, k) = albedo.factor(&fitted, terms(parts.k), parts.power).ok_or_else(pole)?;
     let model = spec.model.as_ref().map_or("", |(info, _)| info.id);
+    let [lo, hi] = spec.grid.axes()[axes[1]].domain.map(|v| spec.grid.axes()[axes[1]].quantity.to_base(v));
     let titles = [
-        format!("Split sum of {model}, mu = n.v and alpha = roughness^2 in [0, 1]"),
+        format!("Split sum of {model}, mu = n.v in [0, 1], alpha = roughness^2 in [{lo}, {hi}]"),
         format!("Rational, degree {degree}"),
     ];
     let results = ["scale", "bias", "E = scale + bias"].map(str::to_owned).to_vec();
