@@ -148,10 +148,14 @@ cites! {
     LAZANYI_2005 = "Lazanyi2005", "Lazanyi, Szirmay-Kalos: Fresnel Term Approximations for Metals, WSCG short papers", 2005, "http://hdl.handle.net/11025/11214";
     /// Lindbloom, matrices of colour spaces.
     LINDBLOOM = "Lindbloom", "Lindbloom: RGB/XYZ Matrices", 2017, "http://www.brucelindbloom.com/index.html?Eqn_RGB_XYZ_Matrix.html";
+    /// Marquardt, damped steps of least squares.
+    MARQUARDT_1963 = "Marquardt1963", "Marquardt: An Algorithm for Least-Squares Estimation of Nonlinear Parameters, Journal of SIAM 11(2)", 1963, "https://doi.org/10.1137/0111030";
     /// Matusik and others, the measured materials of MERL.
     MATUSIK_2003 = "Matusik2003", "Matusik, Pfister, Brand, McMillan: A Data-Driven Reflectance Model, ACM TOG 22(3)", 2003, "https://doi.org/10.1145/882262.882343";
     /// Minnaert, the reciprocity principle in lunar photometry.
     MINNAERT_1941 = "Minnaert1941", "Minnaert: The Reciprocity Principle in Lunar Photometry, Astrophysical Journal 93", 1941, "https://doi.org/10.1086/144279";
+    /// Nakatsukasa and Trefethen, least largest errors of rational functions by weights.
+    NAKATSUKASA_TREFETHEN_2020 = "NakatsukasaTrefethen2020", "Nakatsukasa, Trefethen: An Algorithm for Real and Complex Rational Minimax Approximation, SIAM Journal on Scientific Computing 42(5)", 2020, "https://doi.org/10.1137/19M1281897";
     /// Nelder and Mead, minimisation without derivatives.
     NELDER_MEAD_1965 = "NelderMead1965", "Nelder, Mead: A Simplex Method for Function Minimization, The Computer Journal 7(4)", 1965, "https://doi.org/10.1093/comjnl/7.4.308";
     /// Neubelt and Pettineo, cloth in a game.
@@ -184,6 +188,8 @@ cites! {
     RIBARDIERE_2017 = "Ribardiere2017", "Ribardiere, Bringier, Meneveaux, Simonot: STD: Student's t-Distribution of Slopes for Microfacet Based BSDFs, CGF 36(2)", 2017, "https://doi.org/10.1111/cgf.13137";
     /// Rusinkiewicz, coordinates of half and difference vector.
     RUSINKIEWICZ_1998 = "Rusinkiewicz1998", "Rusinkiewicz: A New Change of Variables for Efficient BRDF Representation, Eurographics Workshop on Rendering", 1998, "https://doi.org/10.1007/978-3-7091-6453-2_2";
+    /// Sanathanan and Koerner, rational functions by linear least squares, step by step.
+    SANATHANAN_KOERNER_1963 = "SanathananKoerner1963", "Sanathanan, Koerner: Transfer Function Synthesis as a Ratio of Two Complex Polynomials, IEEE Transactions on Automatic Control 8(1)", 1963, "https://doi.org/10.1109/TAC.1963.1105517";
     /// Schlick, the approximation of the Fresnel factor.
     SCHLICK_1994 = "Schlick1994", "Schlick: An Inexpensive BRDF Model for Physically-based Rendering, CGF 13(3)", 1994, "https://doi.org/10.1111/1467-8659.1330233";
     /// Snyder, spherical lights.

@@ -1,38 +1,60 @@
-//! `brdfbake fit ggx --degree 2 --lang wgsl`: the split sum of a model as a formula, with its errors.
+//! `brdfbake fit`: a table as a formula, with its errors: the split sum of a model, or the channels of any table.
 
-use super::{Exit, Failure, albedo, output};
-use crate::report::analytic::{self, DEGREES, Fit, Lang, Variables};
+use super::{Exit, Failure, albedo, bake, output};
+use crate::report::analytic::{self, DEGREES, Fit, FitError, Form, Lang};
+use crate::tables::Bound;
 use crate::tables::spec::Request;
 
 /// Arguments of `fit`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A model whose Fresnel factor splits off.
-    #[arg(default_value = "ggx")]
-    model: String,
+    /// A model; without a table, one whose Fresnel factor splits off. Default: the table's, or ggx.
+    model: Option<String>,
     /// A parameter, as key=value; may be given several times.
     #[arg(short, long = "param", value_name = "KEY=VALUE")]
     params: Vec<String>,
-    /// Degree of the polynomials in each variable, 1 to 5.
+    /// A table of this recipe or preset, on its axes.
+    #[arg(short, long, value_name = "RECIPE", conflicts_with_all = ["model", "params", "layout"])]
+    recipe: Option<String>,
+    /// Which table: a name in the recipe; without one, a kind of `list tables` on its default axes.
+    #[arg(short, long)]
+    table: Option<String>,
+    /// Channels of the kind; its first layout if not given.
+    #[arg(long, requires = "table")]
+    layout: Option<String>,
+    /// Each channel by itself, as P or as P / Q, in the coordinates of the axes; split sums have a form of their own.
+    #[arg(long, value_enum)]
+    form: Option<Form>,
+    /// Degree, 1 to 5; of polynomials, 1 to 8. Default: 3
     #[arg(short, long, conflicts_with = "error")]
     degree: Option<usize>,
-    /// Instead of a degree: the largest error in the practical domain; the least degree that reaches it is taken.
+    /// Instead of a degree: the largest error; the least degree that reaches it is taken.
     #[arg(short, long)]
     error: Option<f64>,
-    /// The variable beside alpha.
-    #[arg(long, value_enum, default_value = "coupled")]
-    variables: Variables,
+    /// Where the error is asked for: practical is mu >= 0.05, roughness >= 0.09.
+    #[arg(long, value_enum, default_value = "practical")]
+    domain: Domain,
     /// Language of the code.
-    #[arg(short, long, value_enum, default_value = "glsl")]
+    #[arg(long, value_enum, default_value = "glsl")]
     lang: Lang,
+}
+
+/// Where an error is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Domain {
+    Practical,
+    Whole,
 }
 
 /// Runs it: exit code 4 if no degree reaches the error.
 ///
 /// # Errors
-/// [`Failure`] for a bad model, parameter, degree or error, or if there is no fit.
+/// [`Failure`] for a bad model, recipe, table, parameter, degree or error, or if there is no fit.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
-    let [least, most] = DEGREES;
+    let bound = bound(args)?;
+    let split = args.form.is_none() && analytic::splits(&bound);
+    let form = args.form.unwrap_or(Form::Rational);
+    let [least, most] = if split { DEGREES } else { form.degrees() };
     let degrees = match (args.degree, args.error) {
         (Some(n), _) if !(least..=most).contains(&n) => {
             return Err(Failure::usage(format!("--degree {n} outside {least} to {most}")));
@@ -40,40 +62,82 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         (_, Some(e)) if !(e > 0.0 && e.is_finite()) => {
             return Err(Failure::usage(format!("--error {e} must be a positive number")));
         }
-        (n, None) => n.unwrap_or(2)..=n.unwrap_or(2),
+        (n, None) => n.unwrap_or(3)..=n.unwrap_or(3),
         (_, Some(_)) => least..=most,
     };
-    let request = Request {
-        kind: "dfg".to_owned(),
-        layout: Some("factored".to_owned()),
-        model: Some(args.model.clone()),
-        params: albedo::parse_params(&args.params)?,
-        ..Request::default()
-    };
-    let bound = request.bind().map_err(Failure::input)?;
-    let mut best: Option<Fit> = None;
-    for degree in degrees {
-        let fit = match analytic::fit(&bound, degree, args.variables) {
-            Ok(fit) => fit,
-            // another degree may do
-            Err(analytic::FitError::Pole { .. }) if args.error.is_some() => continue,
-            Err(e) => return Err(Failure::new(Exit::Failed, e)),
-        };
-        if best.as_ref().is_none_or(|b| fit.practical.largest < b.practical.largest) {
-            best = Some(fit);
-        }
-        if best.as_ref().zip(args.error).is_some_and(|(b, e)| b.practical.largest <= e) {
-            break;
-        }
-    }
-    let fit = best.ok_or_else(|| Failure::new(Exit::Failed, "no degree has a positive denominator"))?;
-    if let Some(asked) = args.error.filter(|e| fit.practical.largest > *e) {
-        let reached = fit.practical.largest;
+    let results = if split { 3 } else { bound.spec.layout.channels.len() };
+    if results > args.lang.most_results() {
+        let (lang, most) = (format!("{:?}", args.lang).to_lowercase(), args.lang.most_results());
         let message = format!(
-            "no degree up to {most} is within {asked:e} in the practical domain; the best reached {reached:e}"
+            "a function of {lang} returns {most} numbers, this table has {results}; use --lang c or rust"
         );
-        return Err(Failure::new(Exit::Failed, message));
+        return Err(Failure::new(Exit::Unsupported, message));
     }
+    let one = |degree| {
+        if split { analytic::split_sum(&bound, degree) } else { analytic::table(&bound, form, degree) }
+    };
+    let fit = best(degrees, args, one)?;
     output::data(&fit.code(args.lang));
     Ok(Exit::Done)
+}
+
+/// The one degree, or the least that reaches the error.
+fn best(
+    degrees: std::ops::RangeInclusive<usize>,
+    args: &Args,
+    one: impl Fn(usize) -> Result<Fit, FitError>,
+) -> Result<Fit, Failure> {
+    let practical = args.domain == Domain::Practical;
+    let most = *degrees.end();
+    let mut reached: Option<f64> = None;
+    for degree in degrees {
+        match (one(degree), args.error) {
+            (Ok(fit), None) => return Ok(fit),
+            (Ok(fit), Some(error)) if fit.largest(practical) <= error => return Ok(fit),
+            (Ok(fit), Some(_)) => {
+                reached = Some(reached.map_or(fit.largest(practical), |r| r.min(fit.largest(practical))));
+            }
+            // another degree may do
+            (Err(FitError::Pole { .. }), Some(_)) => {}
+            (Err(e @ FitError::Axis(_)), _) => return Err(Failure::new(Exit::Unsupported, e)),
+            (Err(e @ FitError::Table { .. }), _) => return Err(Failure::input(e)),
+            (Err(e), _) => return Err(Failure::new(Exit::Failed, e)),
+        }
+    }
+    let reached =
+        reached.map_or_else(|| "none fits at all".to_owned(), |r| format!("the best reached {r:.2e}"));
+    let (error, domain) = (args.error.unwrap_or_default(), format!("{:?}", args.domain).to_lowercase());
+    let message = format!("no degree up to {most} is within {error:e} over the {domain} domain; {reached}");
+    Err(Failure::new(Exit::Failed, message))
+}
+
+/// The table that is to be fitted.
+fn bound(args: &Args) -> Result<Bound, Failure> {
+    let Some(recipe) = &args.recipe else {
+        let split = args.table.is_none();
+        let request = Request {
+            kind: args.table.clone().unwrap_or_else(|| "dfg".to_owned()),
+            layout: if split { Some("factored".to_owned()) } else { args.layout.clone() },
+            model: args.model.clone(),
+            params: albedo::parse_params(&args.params)?,
+            ..Request::default()
+        };
+        return request.bind().map_err(Failure::input);
+    };
+    let mut tables = bake::plan(recipe)?.tables;
+    let names: Vec<String> = tables.iter().map(|t| t.name.clone()).collect();
+    let place = match &args.table {
+        None if names.len() == 1 => Some(0),
+        None => None,
+        Some(name) => names.iter().position(|n| n == name),
+    };
+    match (place, &args.table) {
+        (Some(i), _) => Ok(tables.swap_remove(i).bound),
+        (None, Some(name)) => {
+            Err(Failure::input(format!("{recipe}: no table `{name}`; there is {}", names.join(", "))))
+        }
+        (None, None) => {
+            Err(Failure::usage(format!("{recipe} has {}; name one with --table", names.join(", "))))
+        }
+    }
 }

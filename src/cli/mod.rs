@@ -49,7 +49,7 @@ enum Verb {
     Laws(laws::Args),
     /// Draw the lobe of a model as a polar plot.
     Plot(plot::Args),
-    /// Fit a formula to the split sum of a model, as shader code.
+    /// Fit a formula to the split sum of a model, or to any table, as shader code.
     Fit(fit::Args),
     /// List models, functions, tables, presets, engines, formats, laws or quantities.
     List(list::Args),

@@ -50,6 +50,13 @@ pub fn nonnegative(gram: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
     w
 }
 
+/// The x of `G x = b`, G symmetric and positive, by Cholesky's factors; none if it is singular.
+#[must_use]
+pub fn positive(gram: &[Vec<f64>], b: &[f64]) -> Option<Vec<f64>> {
+    let all: Vec<usize> = (0..b.len()).collect();
+    solve(gram, b, &all)
+}
+
 /// The unconstrained solution for the unknowns of `set`, by Cholesky's factors; none if the matrix is singular.
 fn solve(gram: &[Vec<f64>], b: &[f64], set: &[usize]) -> Option<Vec<f64>> {
     let n = set.len();

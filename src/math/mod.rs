@@ -6,6 +6,7 @@ pub mod exp;
 pub mod frame;
 pub mod least_squares;
 pub mod nearest;
+pub mod rational;
 pub mod root;
 pub mod simplex;
 pub mod special;

@@ -197,7 +197,8 @@ fn around(grid: &Grid, x: &[f64; MAX_AXES]) -> Vec<[f64; MAX_AXES]> {
 }
 
 /// Is there an axis that the practical domain cuts?
-fn has_practical(grid: &Grid) -> bool {
+#[must_use]
+pub fn has_practical(grid: &Grid) -> bool {
     grid.axes().iter().any(|a| ["mu", "alpha"].contains(&a.quantity.base_id()))
 }
 

@@ -4,7 +4,7 @@ use super::{Call, Function, Syntax};
 
 /// An expression in floating point.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Expression {
+pub(crate) enum Expression {
     Name(String),
     Number(f64),
     Infix(Box<Expression>, char, Box<Expression>),
@@ -14,7 +14,7 @@ pub(super) enum Expression {
 use Expression::{Infix, Name, Number};
 
 impl Expression {
-    pub(super) fn name(name: impl Into<String>) -> Expression {
+    pub(crate) fn name(name: impl Into<String>) -> Expression {
         Name(name.into())
     }
 
@@ -23,15 +23,15 @@ impl Expression {
     }
 
     /// Sum; without a term that is 0.
-    pub(super) fn plus(self, other: Expression) -> Expression {
+    pub(crate) fn plus(self, other: Expression) -> Expression {
         if other.is(0.0) { self } else { self.infix('+', other) }
     }
 
-    pub(super) fn minus(self, other: Expression) -> Expression {
+    pub(crate) fn minus(self, other: Expression) -> Expression {
         if other.is(0.0) { self } else { self.infix('-', other) }
     }
 
-    pub(super) fn times(self, other: Expression) -> Expression {
+    pub(crate) fn times(self, other: Expression) -> Expression {
         match () {
             () if other.is(1.0) => self,
             () if self.is(1.0) => other,
@@ -39,24 +39,24 @@ impl Expression {
         }
     }
 
-    pub(super) fn over(self, other: Expression) -> Expression {
+    pub(crate) fn over(self, other: Expression) -> Expression {
         if other.is(1.0) { self } else { self.infix('/', other) }
     }
 
-    pub(super) fn max(self, least: f64) -> Expression {
+    pub(crate) fn max(self, least: f64) -> Expression {
         Expression::Call(Function::Max, vec![self, Number(least)])
     }
 
-    pub(super) fn clamp(self, least: f64, most: f64) -> Expression {
+    pub(crate) fn clamp(self, least: f64, most: f64) -> Expression {
         Expression::Call(Function::Min, vec![self.max(least), Number(most)])
     }
 
-    pub(super) fn cos(self) -> Expression {
+    pub(crate) fn cos(self) -> Expression {
         Expression::Call(Function::Cos, vec![self])
     }
 
     /// Power of a number that is not negative, by roots and products where they do, as the warps compute it.
-    pub(super) fn pow(self, p: f64) -> Expression {
+    pub(crate) fn pow(self, p: f64) -> Expression {
         let sqrt = |x| Expression::Call(Function::Sqrt, vec![x]);
         let is = |q: f64| (p - q).abs() == 0.0;
         match () {
@@ -68,12 +68,57 @@ impl Expression {
         }
     }
 
+    pub(crate) fn min(self, other: Expression) -> Expression {
+        Expression::Call(Function::Min, vec![self, other])
+    }
+
+    /// The value in f32, operation by operation as the code computes it; `None` for a name without a value.
+    #[allow(clippy::cast_possible_truncation, reason = "the program computes in f32")]
+    pub(crate) fn evaluate(&self, of: &impl Fn(&str) -> Option<f32>) -> Option<f32> {
+        match self {
+            Name(name) => of(name),
+            Number(v) => Some(*v as f32),
+            Infix(a, operator, b) => {
+                let (a, b) = (a.evaluate(of)?, b.evaluate(of)?);
+                Some(match operator {
+                    '+' => a + b,
+                    '-' => a - b,
+                    '*' => a * b,
+                    _ => a / b,
+                })
+            }
+            Expression::Call(function, arguments) => {
+                let first = arguments.first()?.evaluate(of)?;
+                let second = || arguments.get(1)?.evaluate(of);
+                Some(match function {
+                    Function::Sqrt => first.sqrt(),
+                    Function::Cos => libm::cosf(first),
+                    Function::Pow => libm::powf(first, second()?),
+                    Function::Min => first.min(second()?),
+                    Function::Max => first.max(second()?),
+                })
+            }
+        }
+    }
+
+    /// Sums, differences, products, quotients, roots and other functions; minima and maxima are not counted.
+    pub(crate) fn operations(&self) -> usize {
+        match self {
+            Name(_) | Number(_) => 0,
+            Infix(a, _, b) => 1 + a.operations() + b.operations(),
+            Expression::Call(function, arguments) => {
+                let own = usize::from(!matches!(function, Function::Min | Function::Max));
+                own + arguments.iter().map(Expression::operations).sum::<usize>()
+            }
+        }
+    }
+
     fn is(&self, value: f64) -> bool {
         matches!(self, Number(v) if (v - value).abs() == 0.0)
     }
 
     /// Text in a language; parts of an infix expression that are infix themselves are in brackets.
-    pub(super) fn write(&self, syntax: &dyn Syntax, double: bool) -> String {
+    pub(crate) fn write(&self, syntax: &dyn Syntax, double: bool) -> String {
         let part = |e: &Expression| match e {
             Infix(..) => format!("({})", e.write(syntax, double)),
             Number(v) if *v < 0.0 => format!("({})", e.write(syntax, double)),

@@ -29,12 +29,14 @@ pub use rust::Rust;
 pub use wgsl::Wgsl;
 
 use super::{EncodeError, EncodeInput, Encoder, Storage};
+pub(crate) use expression::Expression;
 use program::Program;
+pub(crate) use program::coordinates;
 use std::fmt::Debug;
 
 /// Functions that an expression calls.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Function {
+pub(crate) enum Function {
     Sqrt,
     Pow,
     Cos,

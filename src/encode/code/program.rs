@@ -129,9 +129,14 @@ fn offset(corner: usize, channel: usize) -> String {
     if channel == 0 { format!("a{corner}") } else { format!("a{corner} + {channel}") }
 }
 
-/// Fractional index on each axis; refused if one sweeps a quantity whose map to its base is not known here.
-/// `clamped`: what lies outside of a domain counts as its end in couplings too.
+/// Fractional index on each axis; see [`coordinates`].
 pub(super) fn indices(axes: &[Axis], clamped: bool) -> Result<Vec<Expression>, EncodeError> {
+    Ok(axes.iter().zip(coordinates(axes, clamped)?).map(|(axis, x)| index(axis, x)).collect())
+}
+
+/// Axis coordinates in [0, 1] as expressions in the axes' own quantities; refused if a quantity has no map to its base here.
+/// `clamped`: what lies outside of a domain counts as its end in couplings too.
+pub(crate) fn coordinates(axes: &[Axis], clamped: bool) -> Result<Vec<Expression>, EncodeError> {
     let one = |axis: &Axis| {
         let coupled = match axis.warp.couples_to() {
             None => Expression::Number(0.0),
@@ -144,13 +149,13 @@ pub(super) fn indices(axes: &[Axis], clamped: bool) -> Result<Vec<Expression>, E
                 None => Expression::name(base),
             },
         };
-        Ok(index(axis, coupled))
+        Ok(coordinate(axis, coupled))
     };
     axes.iter().map(one).collect()
 }
 
-/// [`Axis::index`] as an expression, clamped to the texels.
-fn index(axis: &Axis, coupled: Expression) -> Expression {
+/// The axis coordinate of a value, clamped to the domain.
+fn coordinate(axis: &Axis, coupled: Expression) -> Expression {
     use Expression::Number;
     let [lo, hi] = axis.domain;
     let v = Expression::name(axis.quantity.id).minus(Number(lo)).over(Number(hi - lo)).clamp(0.0, 1.0);
@@ -165,7 +170,12 @@ fn index(axis: &Axis, coupled: Expression) -> Expression {
             ratio.pow(1.0 / power)
         }
     };
-    let x = if axis.direction == Direction::Descending { Number(1.0).minus(x) } else { x };
+    if axis.direction == Direction::Descending { Number(1.0).minus(x) } else { x }
+}
+
+/// [`Axis::index`] as an expression, clamped to the texels.
+fn index(axis: &Axis, x: Expression) -> Expression {
+    use Expression::Number;
     let last = count(axis.len - 1);
     let place = match axis.texel {
         Texel::Center => x.times(Number(count(axis.len))).minus(Number(0.5 + axis.offset)),

@@ -1,0 +1,76 @@
+//! Channels of any table, each by itself, against values that this program did not make.
+
+use crate::common::{axis, request};
+use brdfbake::grid::{Texel, Warp};
+use brdfbake::report::analytic::{Fit, FitError, Form, Lang, table};
+use brdfbake::tables::spec::Request;
+
+fn of(kind: &str, layout: &str, form: Form, degree: usize) -> Fit {
+    let request = Request { kind: kind.into(), layout: Some(layout.into()), ..Request::default() };
+    table(&request.bind().unwrap(), form, degree).unwrap()
+}
+
+#[test]
+fn an_albedo_agrees_with_the_closed_form() {
+    let coupled = Warp::Coupled { to: "alpha".into(), power: 2.0, scale: 1.0, exponent: 1.0 };
+    let axes = vec![axis("mu", 8, Texel::Endpoint).warped(coupled), axis("roughness", 8, Texel::Endpoint)];
+    let bound = request("albedo", "e", "{}", axes);
+    let fit = table(&bound, Form::Rational, 3).unwrap();
+    eprintln!("{} operations, {:?}", fit.operations(), fit.whole);
+    assert!(fit.largest(false) < 0.06 && fit.largest(true) < 0.02, "{:?}", fit.practical);
+    for i in 1..=100 {
+        let mu = f64::from(i) / 100.0;
+        let e = 1.0 - mu * libm::log((1.0 + mu) / mu);
+        let got = f64::from(fit.evaluate(&[mu as f32, 1.0])[0]);
+        assert!((got - e).abs() <= 1.02 * fit.largest(mu >= 0.05), "{mu}: {got}, {e}");
+    }
+}
+
+#[test]
+fn schlick_is_a_polynomial_of_degree_five() {
+    let linear = vec![axis("mu", 8, Texel::Endpoint), axis("f0", 8, Texel::Endpoint)];
+    let bound = request("fresnel-schlick", "clamped", "{}", linear);
+    let [four, six] = [4, 6].map(|d| table(&bound, Form::Polynomial, d).unwrap());
+    // f0 + (1 - f0) (1 - mu)^5 has total degree 6
+    assert!(six.whole.largest < 2e-5, "{:?}", six.whole);
+    assert!(four.whole.largest > 1e-3, "{:?}", four.whole);
+    let got = f64::from(six.evaluate(&[0.25, 0.5])[0]);
+    assert!((got - (0.5 + 0.5 * 0.75f64.powi(5))).abs() < 2e-5, "{got}");
+}
+
+#[test]
+fn a_mean_over_one_axis_agrees_with_the_closed_form() {
+    for form in [Form::Polynomial, Form::Rational] {
+        let fit = of("average-albedo", "e-avg", form, 4);
+        // E_avg(1) = 4/3 (1 - ln 2), a mirror has 1
+        let last = fit.arguments().len();
+        assert_eq!(last, 1);
+        let got = f64::from(fit.evaluate(&[1.0])[0]);
+        let want = 4.0 / 3.0 * (1.0 - std::f64::consts::LN_2);
+        assert!((got - want).abs() <= fit.whole.largest + 1e-6, "{got}, {want}, {:?}", fit.whole);
+        assert!(fit.whole.largest < 0.01, "{form:?}: {:?}", fit.whole);
+    }
+}
+
+#[test]
+fn what_cannot_be_fitted_is_refused() {
+    let three = vec![
+        axis("mu", 4, Texel::Endpoint),
+        axis("alpha", 4, Texel::Endpoint).over([0.1, 1.0]),
+        axis("f0", 4, Texel::Endpoint),
+    ];
+    let bound = request("albedo", "e", "{}", three);
+    let error = table(&bound, Form::Rational, 2).unwrap_err();
+    assert!(matches!(error, FitError::Table { .. }), "{error}");
+    let bound = request("albedo", "e", "{}", vec![axis("mu", 4, Texel::Endpoint)]);
+    assert!(matches!(table(&bound, Form::Rational, 9), Err(FitError::Table { .. })));
+}
+
+#[test]
+fn the_code_does_not_depend_on_the_number_of_threads() {
+    let code = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| of("fresnel-dielectric", "polarised", Form::Rational, 2).code(Lang::Glsl))
+    };
+    assert_eq!(code(1), code(3));
+}
