@@ -125,9 +125,9 @@ fn normal(wo: DVec3, alpha: f64, u: f64, v: f64) -> DVec3 {
     let t1 = if view.z < 0.9999 { DVec3::Z.cross(view).normalize() } else { DVec3::X };
     let t2 = view.cross(t1);
     let (r, phi) = (u.sqrt(), std::f64::consts::TAU * v);
-    let x = r * phi.cos();
+    let x = r * libm::cos(phi);
     let s = 0.5 * (1.0 + view.z);
-    let y = (1.0 - s) * (1.0 - x * x).sqrt() + s * r * phi.sin();
+    let y = (1.0 - s) * (1.0 - x * x).sqrt() + s * r * libm::sin(phi);
     let z = (1.0 - x * x - y * y).max(0.0).sqrt();
     let n = x * t1 + y * t2 + z * view;
     DVec3::new(alpha * n.x, alpha * n.y, n.z.max(0.0)).normalize()

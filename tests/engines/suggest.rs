@@ -53,7 +53,7 @@ fn evaluate(f: &Function, e: Handle<Expression>, arguments: &[Vec<f32>]) -> Vec<
             let (a, b) = (of(arg)[0], arg1.map(|b| of(b)[0]));
             vec![match fun {
                 MathFunction::Sqrt => a.sqrt(),
-                MathFunction::Pow => a.powf(b.unwrap()),
+                MathFunction::Pow => libm::powf(a, b.unwrap()),
                 MathFunction::Min => a.min(b.unwrap()),
                 MathFunction::Max => a.max(b.unwrap()),
                 other => panic!("{other:?}"),
