@@ -6,7 +6,7 @@ mod sample;
 mod shapes;
 
 use brdfbake::encode::read::read_file;
-use brdfbake::encode::{ENCODERS, quantise_table};
+use brdfbake::encode::{ENCODERS, Storage, encoder, quantise_table};
 use sample::{file, grid, hard, provenance, table};
 
 /// Writes one file of each kind, with what it must hold, for `tests/foreign/read_back.py`.
@@ -42,6 +42,35 @@ fn write_for_foreign_readers() {
         }
     }
     shapes::write(&folder);
+    write_set(&folder);
+}
+
+/// Two tables as parts of one OpenEXR file, and what each part must hold.
+fn write_set(folder: &std::path::Path) {
+    let exr = encoder("exr").unwrap();
+    let mut parts = serde_json::Map::new();
+    let mut files = Vec::new();
+    for (name, channels, storage) in
+        [("split-sum", &["dfg.scale", "dfg.bias"][..], Storage::Half), ("albedo", &["e"], Storage::Float)]
+    {
+        let t = table(channels, hard(storage));
+        let mut p = provenance(&t, storage);
+        p.name = name.to_owned();
+        let values = quantise_table(&t, storage).unwrap().values;
+        let plane = |(c, id): (usize, &&str)| {
+            let bits = |v: &f64| format!("{:016x}", v.to_bits());
+            let column: Vec<String> = values.iter().skip(c).step_by(channels.len()).map(bits).collect();
+            ((*id).to_owned(), column.into())
+        };
+        let planes: serde_json::Map<String, serde_json::Value> =
+            channels.iter().enumerate().map(plane).collect();
+        let text = serde_json::to_string(&p).unwrap();
+        parts.insert(name.to_owned(), serde_json::json!({ "channels": planes, "brdfbake": text }));
+        files.push(file(exr, &t, storage, &p));
+    }
+    std::fs::write(folder.join("set.exr"), exr.join(&files).unwrap()).unwrap();
+    let text = serde_json::Value::from(parts).to_string();
+    std::fs::write(folder.join("set.exr.parts.json"), text).unwrap();
 }
 
 /// Reads the files of `tests/foreign/write_out.py`.

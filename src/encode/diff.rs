@@ -162,6 +162,7 @@ fn metadata(a: &Image, b: &Image) -> Option<JsonDiff> {
     let value = |image: &Image| match &image.provenance {
         None => serde_json::Value::Null,
         Some(Claim::Known(p)) => serde_json::to_value(p).unwrap_or_default(),
+        Some(Claim::Several(all)) => serde_json::to_value(all).unwrap_or_default(),
         Some(Claim::Unknown { text, .. }) => {
             serde_json::from_str(text).unwrap_or_else(|_| serde_json::Value::String(text.clone()))
         }

@@ -1,5 +1,6 @@
 //! OpenEXR: half or float, ZIP-compressed scan lines in one part; with option `tiled` tiles of 64 x 64 pixels, with `parts`
-//! one part a slice of a table with three axes or more (`slice_000`, `slice_001`, ...), not slices below each other.
+//! one part a slice of a table with three axes or more (`slice_000`, `slice_001`, ...), not slices below each other. Tables that
+//! name the same file become parts of it, named after them, each with its own provenance.
 //!
 //! Channel names are the ids of the table. OpenEXR reads a dot as a layer: `dfg.scale` is channel `scale` of layer
 //! `dfg`. Channels lie in the file sorted by name, as the format demands.
@@ -56,6 +57,23 @@ impl Encoder for Exr {
         super::exr_read::read(bytes)
     }
 
+    fn joins(&self) -> bool {
+        true
+    }
+
+    fn join(&self, files: &[Vec<u8>]) -> Result<Vec<u8>, EncodeError> {
+        let mut layers = Vec::new();
+        for file in files {
+            layers.extend(parts(file).map_err(library)?);
+        }
+        let size = layers.first().map_or(Vec2(1, 1), |l| l.size);
+        if layers.iter().any(|l| l.size != size) {
+            let fault = "the tables of one file are parts of one size";
+            return Err(EncodeError::Axes { format: self.id(), fault });
+        }
+        write(ImageAttributes::with_size(size), layers)
+    }
+
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
         input.check(self)?;
         let shape = input.shape();
@@ -79,14 +97,56 @@ impl Encoder for Exr {
             Layer::new((width, height), attributes, encoding, channels(input, texels))
         };
         let layers: Vec<Layer<_>> = (0..parts).map(layer).collect();
-        let mut bytes = Cursor::new(Vec::new());
-        Image::from_layers(ImageAttributes::with_size((width, height)), layers)
-            .write()
-            .non_parallel()
-            .to_buffered(&mut bytes)
-            .map_err(|e| EncodeError::Library { format: self.id(), source: Box::new(e) })?;
-        Ok(bytes.into_inner())
+        write(ImageAttributes::with_size((width, height)), layers)
     }
+}
+
+fn library(e: ::exr::error::Error) -> EncodeError {
+    EncodeError::Library { format: "exr", source: Box::new(e) }
+}
+
+fn write(
+    attributes: ImageAttributes,
+    layers: Vec<Layer<AnyChannels<FlatSamples>>>,
+) -> Result<Vec<u8>, EncodeError> {
+    let mut bytes = Cursor::new(Vec::new());
+    Image::from_layers(attributes, layers).write().non_parallel().to_buffered(&mut bytes).map_err(library)?;
+    Ok(bytes.into_inner())
+}
+
+/// The parts of a file that this container wrote, named after its table.
+fn parts(file: &[u8]) -> ::exr::error::Result<Vec<Layer<AnyChannels<FlatSamples>>>> {
+    let image = ::exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .all_layers()
+        .all_attributes()
+        .non_parallel()
+        .from_buffered(Cursor::new(file))?;
+    let mut parts: Vec<Layer<_>> = image.layer_data.into_iter().collect();
+    let key = text(ATTRIBUTE);
+    // a file of one part has its attribute in either place
+    let shared = image.attributes.other.get(&key).cloned();
+    let own = parts.first().and_then(|p| p.attributes.other.get(&key).cloned());
+    let provenance = own.or(shared);
+    let json = match &provenance {
+        Some(AttributeValue::Text(json)) => String::from_utf8_lossy(json.as_slice()).into_owned(),
+        _ => String::new(),
+    };
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap_or_default();
+    let table = json["name"].as_str().unwrap_or("table").to_owned();
+    for (i, part) in parts.iter_mut().enumerate() {
+        let slice = part.attributes.layer_name.take();
+        let name = slice
+            .map_or_else(|| table.clone(), |s| format!("{table}.{}", String::from_utf8_lossy(s.as_slice())));
+        part.attributes.layer_name = Some(text(&name));
+        part.attributes.other.clear();
+        if let Some(value) = provenance.as_ref().filter(|_| i == 0) {
+            part.attributes.other.insert(key.clone(), value.clone());
+        }
+    }
+    Ok(parts)
 }
 
 /// The channels of a run of texels, sorted by name.

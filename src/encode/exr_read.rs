@@ -32,7 +32,7 @@ fn decode(bytes: &[u8]) -> Result<Image, ReadError> {
     let reader = ::exr::block::read(Cursor::new(bytes), false).map_err(library)?;
     let headers = reader.headers();
     let (width, height) = size(headers)?;
-    let provenance = headers.iter().find_map(claim);
+    let provenance = claims(headers.iter().filter_map(claim).collect());
     let mut picture = Picture::new(headers)?;
     let mut chunks = reader
         .filter_chunks(false, |_, tile, _| tile.level_index.0 == 0 && tile.level_index.1 == 0)
@@ -115,6 +115,19 @@ fn claim(header: &Header) -> Option<Claim> {
     match own.or_else(|| header.shared_attributes.other.get(&key)) {
         Some(AttributeValue::Text(text)) => Some(Claim::parse(utf8(text))),
         _ => None,
+    }
+}
+
+/// The claims of all parts as that of the file.
+fn claims(mut all: Vec<Claim>) -> Option<Claim> {
+    let known = |c: &Claim| match c {
+        Claim::Known(p) => Some((**p).clone()),
+        _ => None,
+    };
+    match all.iter().map(known).collect::<Option<Vec<_>>>() {
+        Some(several) if several.len() > 1 => Some(Claim::Several(several)),
+        _ if all.is_empty() => None,
+        _ => Some(all.swap_remove(0)),
     }
 }
 

@@ -49,6 +49,8 @@ pub struct Plane {
 pub enum Claim {
     /// The provenance.
     Known(Box<Provenance>),
+    /// Those of several tables in one file, in its order.
+    Several(Vec<Provenance>),
     /// A text that is not a provenance of this version.
     Unknown {
         /// The text.
@@ -216,7 +218,10 @@ impl Claim {
     pub(super) fn parse(text: String) -> Claim {
         match serde_json::from_str(&text) {
             Ok(known) => Claim::Known(Box::new(known)),
-            Err(e) => Claim::Unknown { text, fault: e.to_string() },
+            Err(e) => match serde_json::from_str(&text) {
+                Ok(several) => Claim::Several(several),
+                Err(_) => Claim::Unknown { text, fault: e.to_string() },
+            },
         }
     }
 }

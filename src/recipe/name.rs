@@ -53,19 +53,21 @@ fn shared(a: &Entry, file: &str, b: &Entry, theirs: &str) -> Option<String> {
         return Some("file names must differ by more than case".to_owned());
     }
     let encoders = |e: &Entry| -> Vec<&'static dyn Encoder> {
-        let outputs = e.outputs.iter().flatten().flatten();
-        outputs.filter_map(|o| encode::encoder(&o.container)).collect()
+        let named = e.outputs.iter().flatten().flatten();
+        let named: Vec<_> = named.filter_map(|o| encode::encoder(&o.container)).collect();
+        let default = e.outputs.is_none().then(|| encode::encoder(&super::outputs::default().container));
+        named.into_iter().chain(default.flatten()).collect()
     };
     let all = [encoders(a), encoders(b)];
     let whole = |ok: fn(&dyn Encoder) -> bool| all.iter().all(|l| !l.is_empty() && l.iter().all(|e| ok(*e)));
     match () {
         () if whole(|e| e.is_bare()) => None,
         () if !whole(|e| e.joins()) => Some(
-            "only containers without a header (raw, text) hold one table behind the other, and ktx2 in layers"
+            "only containers without a header (raw, text) hold one table behind the other, ktx2 in layers and exr in parts"
                 .to_owned(),
         ),
         () if a.outputs != b.outputs || lengths(a) != lengths(b) => {
-            Some("the layers of a file have one size, storage and options".to_owned())
+            Some("the layers and parts of a file have one size, storage and options".to_owned())
         }
         () => None,
     }

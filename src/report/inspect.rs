@@ -21,6 +21,14 @@ pub fn inspect(name: &str, image: &Image) -> String {
             planes(&mut lines, image, Some(p));
             quality(&mut lines, p);
         }
+        Some(Claim::Several(tables)) => {
+            planes(&mut lines, image, None);
+            for (i, p) in tables.iter().enumerate() {
+                lines.plain(&format!("Table {} of {}, {}", i + 1, tables.len(), p.name));
+                provenance(&mut lines, p);
+                quality(&mut lines, p);
+            }
+        }
         Some(Claim::Unknown { text, fault }) => {
             planes(&mut lines, image, None);
             lines.plain("The file has brdfbake metadata that this version does not understand:");

@@ -116,10 +116,10 @@ fn layers_of_a_file_are_alike() {
         ("outputs = ['ktx2:half']", "outputs = ['ktx2:float']"),
         ("outputs = ['ktx2:half+zstd']", "outputs = ['ktx2:half']"),
     ] {
-        assert!(message(a, b).contains("the layers of a file have one size, storage and options"));
+        assert!(message(a, b).contains("the layers and parts of a file have one size, storage and options"));
     }
     assert!(
-        message("outputs = ['exr:half']", "outputs = ['exr:half']")
+        message("outputs = ['png:unorm16']", "outputs = ['png:unorm16']")
             .contains("only containers without a header")
     );
 }

@@ -56,6 +56,43 @@ fn tables_in_one_file_follow_each_other() {
 }
 
 #[test]
+fn tables_in_one_exr_are_its_parts() {
+    let one = |name: &str, model: &str| {
+        format!(
+            "[[table]]\nkind = 'albedo'\nname = '{name}'\nfile = 'set.exr'\nmodel = '{model}'\n\
+             [[table.axis]]\nid = 'mu'\nlength = 5\n[[table.axis]]\nid = 'alpha'\nlength = 3\ndomain = [0.1, 1.0]\n"
+        )
+    };
+    let both = format!("name = 'x'\n{}{}", one("rough", "ggx"), one("steep", "beckmann"));
+    let plan = parse(&both, "x.toml").unwrap();
+    let out = tempfile::tempdir().unwrap();
+    let files = bake(&plan, out.path());
+    assert_eq!(files[0], files[1]);
+    let bytes = std::fs::read(&files[0]).unwrap();
+    // the same bytes again, with another number of threads
+    let again = tempfile::tempdir().unwrap();
+    let settings = brdfbake::pipeline::Settings { out: again.path().to_owned(), jobs: Some(1) };
+    let cancel = std::sync::atomic::AtomicBool::new(false);
+    brdfbake::pipeline::run(&plan, &settings, &cancel, &brdfbake::pipeline::Silent).unwrap();
+    assert_eq!(bytes, std::fs::read(again.path().join("set.exr")).unwrap());
+    // each part holds what its table holds in a file of its own
+    let set = brdfbake::encode::read::read_bytes(&bytes).unwrap();
+    for (name, model) in [("rough", "ggx"), ("steep", "beckmann")] {
+        let text = format!("name = 'x'\n{}", one(name, model)).replace("file = 'set.exr'\n", "");
+        let alone = tempfile::tempdir().unwrap();
+        let file = bake(&parse(&text, "x.toml").unwrap(), alone.path()).remove(0);
+        let picture = brdfbake::encode::read::read_file(&file).unwrap();
+        let part = set.channel(&format!("{name}.e")).unwrap();
+        assert_eq!(part.values, picture.channels[0].values, "{name}");
+    }
+    let text = brdfbake::report::inspect::inspect("set.exr", &set);
+    assert!(text.contains("Table 1 of 2, rough") && text.contains("Table 2 of 2, steep"), "{text}");
+    let lengths = both.replacen("length = 5", "length = 6", 1);
+    let message = parse(&lengths, "x.toml").unwrap_err().to_string();
+    assert!(message.contains("one size, storage and options"), "{message}");
+}
+
+#[test]
 fn names_that_cannot_be_are_refused() {
     let one = |keys: &str| message(&table("a", keys));
     assert!(one("file = 'a/b.h'").contains("file name `a/b.h` has a character that is not portable"));
@@ -65,7 +102,7 @@ fn names_that_cannot_be_are_refused() {
     assert!(one("file = 1").contains("`file` is an integer"));
     let two = |a: &str, b: &str| message(&format!("{}{}", table("a", a), table("b", b)));
     assert!(
-        two("file = 'x.exr'\noutputs = ['exr:half']", "file = 'x.exr'\noutputs = ['exr:half']")
+        two("file = 'x.png'\noutputs = ['png:unorm16']", "file = 'x.png'\noutputs = ['png:unorm16']")
             .contains("only containers without a header")
     );
     let text = "outputs = ['text:half']\n";

@@ -28,7 +28,7 @@ pub use js::Js;
 pub use rust::Rust;
 pub use wgsl::Wgsl;
 
-use super::{EncodeError, EncodeInput, Encoder, Storage};
+use super::{EncodeError, EncodeInput, Encoder, Shape, Storage};
 pub(crate) use expression::Expression;
 use program::Program;
 pub(crate) use program::coordinates;
@@ -136,6 +136,10 @@ impl Parts<'_> {
     }
 }
 
+/// Most numbers of an array in a shader: a constant of SPIR-V is one instruction of at most 65 535 words, three of which are
+/// not its numbers.
+const MOST_IN_SHADERS: usize = 65_532;
+
 /// A language as a container.
 #[derive(Debug, Clone, Copy)]
 pub struct Code<S>(
@@ -159,6 +163,16 @@ impl<S: Syntax> Encoder for Code<S> {
 
     fn most_channels(&self) -> usize {
         self.0.most_channels()
+    }
+
+    fn check_size(&self, shape: &Shape<'_>) -> Result<(), EncodeError> {
+        let [width, height, slices] = shape.extent();
+        let count = [height, slices, shape.channels].into_iter().fold(width, usize::saturating_mul);
+        let limit = if self.0.vector(1).is_some() { MOST_IN_SHADERS } else { 1 << 26 };
+        if count > limit {
+            return Err(EncodeError::Numbers { format: self.id(), count, limit });
+        }
+        Ok(())
     }
 
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
