@@ -147,8 +147,9 @@ impl Axis {
         let [lo, hi] = self.domain;
         let [min, max] = self.quantity.domain;
         // values that are clamped before use may be spread over more than the quantity has
-        let [least, most] = self.clamp.unwrap_or(self.domain);
-        if !(lo.is_finite() && hi.is_finite() && lo < hi && least >= min && most <= max) {
+        let inside = |[lo, hi]: [f64; 2]| lo >= min && hi <= max;
+        let held = inside(self.domain) || self.clamp.is_some_and(inside);
+        if !(lo.is_finite() && hi.is_finite() && lo < hi && held) {
             return Err(AxisError::Domain { id, lo, hi, min, max });
         }
         let shortest = if self.texel == Texel::Endpoint { 2 } else { 1 };
