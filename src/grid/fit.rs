@@ -102,8 +102,10 @@ impl Texels {
 
 /// Most steps of a linear solution; the matrix is close to diagonal and needs about 30.
 const STEPS: usize = 200;
-/// Residual, relative to the right side, at which a solution is done.
+/// Residual, relative to the first one, at which a solution is done.
 const RESIDUAL: f64 = 1e-11;
+/// The same for the steps of the minimax, each of which begins where the one before ended.
+const RESIDUAL_OF_STEP: f64 = 1e-3;
 /// Rounds in which texels outside the range are held.
 const ROUNDS: usize = 4;
 /// Powers of the minimax.
@@ -241,7 +243,7 @@ impl Samples {
     /// not always, the best set.
     #[must_use]
     pub fn least_squares(&self, truth: &[f64], start: &[f64], range: [f64; 2]) -> Vec<f64> {
-        self.weighted(&self.area, truth, start, range)
+        self.weighted(&self.area, truth, start, range, RESIDUAL)
     }
 
     /// The values in `range` that minimise the largest of `|A v - f| / s`, as far as powers up to 64 go; from `start`. s is
@@ -271,7 +273,7 @@ impl Samples {
             let weight =
                 |((e, s), a): ((&f64, &f64), &f64)| a / (s * s) * libm::pow(e / largest, p - 2.0).max(FLOOR);
             let weights: Vec<f64> = errors.iter().zip(&scale).zip(&self.area).map(weight).collect();
-            let next = self.weighted(&weights, truth, &values, range);
+            let next = self.weighted(&weights, truth, &values, range, RESIDUAL_OF_STEP);
             values.iter_mut().zip(next).for_each(|(v, n)| *v += (n - *v) / (p - 1.0));
         }
         if relative(&values).1 < best.0 { values } else { best.1 }
@@ -296,13 +298,20 @@ impl Samples {
     }
 
     /// Least squares with any weights, inside a range.
-    fn weighted(&self, weights: &[f64], truth: &[f64], start: &[f64], range: [f64; 2]) -> Vec<f64> {
+    fn weighted(
+        &self,
+        weights: &[f64],
+        truth: &[f64],
+        start: &[f64],
+        range: [f64; 2],
+        residual: f64,
+    ) -> Vec<f64> {
         let [lo, hi] = range;
         let diagonal = self.diagonal(weights);
         let mut free: Vec<bool> = diagonal.iter().map(|d| *d > 0.0).collect();
         let mut values = start.to_vec();
         for _ in 0..ROUNDS {
-            self.solve(weights, truth, &diagonal, &free, &mut values);
+            self.solve(weights, truth, &diagonal, &free, residual, &mut values);
             let mut held = false;
             for (v, free) in values.iter_mut().zip(&mut free).filter(|(v, _)| !(lo..=hi).contains(*v)) {
                 (*v, *free, held) = (v.clamp(lo, hi), false, true);
@@ -315,7 +324,15 @@ impl Samples {
     }
 
     /// Conjugate gradients on the normal equations of the free texels, scaled by their diagonal.
-    fn solve(&self, weights: &[f64], truth: &[f64], diagonal: &[f64], free: &[bool], values: &mut [f64]) {
+    fn solve(
+        &self,
+        weights: &[f64],
+        truth: &[f64],
+        diagonal: &[f64],
+        free: &[bool],
+        residual: f64,
+        values: &mut [f64],
+    ) {
         let apply = |v: &[f64]| {
             let mut read = self.read(v);
             read.iter_mut().zip(weights).for_each(|(r, w)| *r *= w);
@@ -332,7 +349,7 @@ impl Samples {
         };
         let mut z = scaled(&rest);
         let mut rho = dot(&rest, &z);
-        let target = RESIDUAL * RESIDUAL * rho;
+        let target = residual * residual * rho;
         let mut direction = z.clone();
         for _ in 0..STEPS {
             if rho <= target || rho <= 0.0 {

@@ -45,7 +45,7 @@ function table() {
     if (texels === undefined) return ['--engine', 'three'];
     const preset = readFileSync(join(here, '../../presets/engines/three.toml'), 'utf8');
     const recipe = join(temporary, 'recipe.toml');
-    writeFileSync(recipe, preset.replace('layout = "scale-bias"', `layout = "scale-bias"\ntexels = "${texels}"`));
+    writeFileSync(recipe, preset.replace('texels = "auto"', `texels = "${texels}"`));
     return [recipe];
 }
 
