@@ -4,8 +4,9 @@
 //! brdfbake bake --engine bevy -o OUT && brdfbake bake tests/bevy/arrays.toml -o OUT
 //! cargo run --manifest-path tests/bevy/Cargo.toml -- OUT
 //! ```
-//! `dfg.ktx2` is compared with `spot_values.csv`, made by `spot_values.py` without brdfbake, and, if BRDFBAKE_SHARED names them, with accurate
-//! integrals at all texels. `array.ktx2` and `volume.ktx2` are compared with the CSV of the same bake: what is checked is that Bevy finds
+//! `samples.ktx2`, which is `dfg.ktx2` with the value at its place in every texel, is compared with `spot_values.csv`, made by `spot_values.py`
+//! without brdfbake, and, if BRDFBAKE_SHARED names them, with accurate integrals at all texels. The texels of `dfg.ktx2` are fitted to the
+//! reader: they must lie round the samples. `ltc.ktx2` is an array of two layers; its mirror end has a closed form. `array.ktx2` and `volume.ktx2` are compared with the CSV of the same bake: what is checked is that Bevy finds
 //! each texel where it belongs.
 //!
 //! Exit code: 0 all agree, 1 not.
@@ -84,8 +85,11 @@ fn compare(texels: &[f64], x: usize, y: usize, want: &[f64]) -> Result<f64, Faul
 
 /// The split sum that Bevy puts in its binary.
 fn dfg(folder: &Path) -> Result<(), Fault> {
-    let image = load(&folder.join("dfg.ktx2"))?;
-    same("dfg.ktx2", &describe(&image), "64 x 64 x 1 D2 Rg16Float")?;
+    let [fitted, image] = ["dfg.ktx2", "samples.ktx2"].map(|name| load(&folder.join(name)));
+    let (fitted, image) = (fitted?, image?);
+    for picture in [&fitted, &image] {
+        same("dfg.ktx2", &describe(picture), "64 x 64 x 1 D2 Rg16Float")?;
+    }
     let texels = halves(&image)?;
     same("values", &texels.len().to_string(), &(64 * 64 * 2).to_string())?;
     let spots = rows(&Path::new(env!("CARGO_MANIFEST_DIR")).join("spot_values.csv"))?;
@@ -94,8 +98,38 @@ fn dfg(folder: &Path) -> Result<(), Fault> {
         let [x, y, _, _, scale, bias, _] = row[..] else { return Err("spot_values.csv: columns".into()) };
         largest = largest.max(compare(&texels, x as usize, y as usize, &[scale, bias])?);
     }
-    println!("ok   dfg.ktx2: {}, {} spot values within {largest:.1e}", describe(&image), spots.len());
+    println!("ok   samples.ktx2: {}, {} spot values within {largest:.1e}", describe(&image), spots.len());
+    let off: Vec<f64> = halves(&fitted)?.iter().zip(&texels).map(|(f, t)| (f - t).abs()).collect();
+    let mean = off.iter().sum::<f64>() / off.len() as f64;
+    let largest = off.iter().copied().fold(0.0, f64::max);
+    // another order of rows or columns would be off by 0.2 in the mean
+    if off.len() != texels.len() || mean > 1e-3 {
+        return Err(format!("dfg.ktx2: {mean} from the samples in the mean").into());
+    }
+    println!("ok   dfg.ktx2: fitted texels {mean:.1e} from the samples in the mean, {largest:.1e} at most");
     shared(&texels)
+}
+
+/// The area lights: layer 0 the matrices, layer 1 magnitude, Fresnel term, 0 and horizon.
+fn ltc(folder: &Path) -> Result<(), Fault> {
+    let image = load(&folder.join("ltc.ktx2"))?;
+    same("ltc.ktx2", &describe(&image), "64 x 64 x 2 D2 Rgba16Float")?;
+    let view = image.texture_view_descriptor.as_ref().and_then(|v| v.dimension);
+    same("view of ltc.ktx2", &format!("{view:?}"), "Some(D2Array)")?;
+    let texels = halves(&image)?;
+    same("values", &texels.len().to_string(), &(2 * 64 * 64 * 4).to_string())?;
+    // a mirror seen along the normal: all light is reflected, none by the grazing term
+    let mirror = &texels[64 * 64 * 4..][..4];
+    if (mirror[0] - 1.0).abs() > 1e-3 || mirror[1].abs() > 1e-3 || mirror[2] != 0.0 {
+        return Err(format!("ltc.ktx2: layer 1 begins with {mirror:?}, not with a mirror").into());
+    }
+    // GGX of alpha = 1 is D = 1 / pi, of which E(1) = 1 - ln 2
+    let rough = texels[(64 * 64 + 63) * 4];
+    if (rough - (1.0 - 2f64.ln())).abs() > 1e-3 {
+        return Err(format!("ltc.ktx2: E = {rough} at roughness 1 along the normal, expected 1 - ln 2").into());
+    }
+    println!("ok   ltc.ktx2: {}, both ends of the first row as closed forms have them", describe(&image));
+    Ok(())
 }
 
 /// All texels, where the shared values are.
@@ -143,7 +177,7 @@ fn main() -> ExitCode {
     let folder = std::env::args().nth(1).unwrap_or_default();
     let folder = Path::new(&folder);
     let mut code = ExitCode::SUCCESS;
-    for check in [dfg, slices] {
+    for check in [dfg, ltc, slices] {
         if let Err(e) = check(folder) {
             println!("FAIL {e}");
             code = ExitCode::from(1);
