@@ -126,7 +126,9 @@ fn ltc(folder: &Path) -> Result<(), Fault> {
     // GGX of alpha = 1 is D = 1 / pi, of which E(1) = 1 - ln 2
     let rough = texels[(64 * 64 + 63) * 4];
     if (rough - (1.0 - 2f64.ln())).abs() > 1e-3 {
-        return Err(format!("ltc.ktx2: E = {rough} at roughness 1 along the normal, expected 1 - ln 2").into());
+        return Err(
+            format!("ltc.ktx2: E = {rough} at roughness 1 along the normal, expected 1 - ln 2").into()
+        );
     }
     println!("ok   ltc.ktx2: {}, both ends of the first row as closed forms have them", describe(&image));
     Ok(())
