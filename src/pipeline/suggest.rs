@@ -126,19 +126,34 @@ fn one(
         if planned.bound.spec.layout.channels.len() == 3 {
             finer.options.push("rgba".to_owned());
         }
-        result.notes.push(format!("{output} reaches {least:.1e}: stored as {finer} instead"));
+        result.notes.push(format!("as {output}, {}: stored as {finer} instead", reached(least)));
         result.found = search.best(&finer, &mut least)?;
     }
     if result.found.is_none() {
         let domain = if want.practical { "practical" } else { "whole" };
         let (longest, error) = (want.longest, want.error);
         result.notes.push(format!(
-            "no table with axes up to {longest} reads to within {error:e} over the {domain} domain; the best reached {least:.1e}"
+            "no table with axes up to {longest} reads to within {error:e} over the {domain} domain; {}",
+            reached(least)
         ));
     } else {
         result.notes.push(format!("roughness below {LEAST_ROUGHNESS} reads as {LEAST_ROUGHNESS}"));
     }
+    if let Some((own, found)) = result.own.as_ref().zip(result.found.as_ref())
+        && found.size.bytes > own.bytes
+    {
+        result.notes.push("it takes more bytes than the engine's own".to_owned());
+    }
     Ok(result)
+}
+
+/// The least error of all trials, in words.
+fn reached(least: f64) -> String {
+    if least.is_finite() {
+        format!("the best reached {least:.1e}")
+    } else {
+        "one axis alone leaves more than that at every length".to_owned()
+    }
 }
 
 struct Search<'a> {

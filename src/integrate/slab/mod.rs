@@ -5,7 +5,7 @@
 //! ```
 //! over black ground, with an extinction that depends on the direction. The medium is even about the horizon and round about the
 //! normal, so the Fourier modes of the azimuth part. In the polar angle the radiance is a polynomial on each of the
-//! panels of [`panels`], discontinuous at their ends (Galerkin's method; the kernel's peak is integrated in [`galerkin`]).
+//! panels of `panels.rs`, discontinuous at their ends (Galerkin's method; the kernel's peak is integrated in `galerkin.rs`).
 //!
 //! With u and v the sum and the difference of the light that goes up and down, scaled by `sqrt(mu w)`,
 //! `du/dz = F v` and `dv/dz = G u` for two symmetric positive matrices. With `F = L L'`, `G = C C'` and the singular values k of
