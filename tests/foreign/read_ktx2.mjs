@@ -61,7 +61,9 @@ for (const name of files) {
     if (file.pixelDepth !== (expected.depth ?? 0) || file.layerCount !== (expected.layers ?? 0)) faults.push('depth or layers');
     if ((file.supercompressionScheme === 2) !== name.includes('zstd')) faults.push('supercompression');
     const dfd = file.dataFormatDescriptor[0];
-    if (dfd.colorModel !== 1 || dfd.transferFunction !== 1) faults.push('descriptor');
+    // colour models of the data format specification: 1 is RGBSDA, blocks have their own
+    const model = { bc4: 131, bc5: 132, bc6h: 133, 'bc6h-signed': 133 }[expected.storage] ?? 1;
+    if (dfd.colorModel !== model || dfd.transferFunction !== 1) faults.push('descriptor');
     const text = file.keyValue.brdfbake;
     const plain = typeof text === 'string' ? text : new TextDecoder().decode(text);
     if (plain.replace(/\0$/, '') !== expected.brdfbake) faults.push('metadata');
