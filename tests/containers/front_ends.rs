@@ -105,7 +105,8 @@ fn shader_files(recipe: &str, folder: &Path) -> Option<Vec<PathBuf>> {
     let output = bake.arg("bake").arg(&file).arg("-o").arg(folder).arg("--quiet").output().unwrap();
     if !output.status.success() {
         let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(told.contains("channels"), "{recipe}: {told}");
+        let refused = told.contains("channels") || told.contains("numbers in one constant");
+        assert!(refused, "{recipe}: {told}");
         return None;
     }
     let files = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
@@ -113,34 +114,23 @@ fn shader_files(recipe: &str, folder: &Path) -> Option<Vec<PathBuf>> {
     Some(files.filter(shader).collect())
 }
 
-/// Numbers of the array in the source: `dfg_table[8192] = `.
-fn numbers(source: &str) -> usize {
-    let (_, rest) = source.split_once("_table[").unwrap();
-    rest.split(']').next().unwrap().parse().unwrap()
-}
-
-/// An instruction of SPIR-V is at most 65 535 words long, of which a constant array needs three beside its numbers.
-const MOST_NUMBERS: usize = 65_532;
-
 /// Every kind of table that a shader can hold, on its own axes.
 #[test]
 #[ignore = "bakes every kind of table: some seconds"]
 fn glslang_compiles_every_kind_of_table() {
     let (mut compiled, mut no_shader) = (Vec::new(), Vec::new());
-    // MERL is 90 x 90 x 180 texels of three channels
-    for kind in TABLES.iter().map(|t| t.id).filter(|id| *id != "merl") {
+    for kind in TABLES.iter().map(|t| t.id) {
         let folder = tempfile::tempdir().unwrap();
         // what is compiled is the code, not its numbers
         let recipe = format!(
             "name = \"one\"\n[[table]]\nkind = \"{kind}\"\nname = \"one\"\ntolerance = 1e-2\n\
              reconstruction = \"off\"\noutputs = [\"glsl:half\", \"hlsl:half\"]\n"
         );
-        let files = shader_files(&recipe, folder.path()).unwrap_or_default();
-        let sources: Vec<String> = files.iter().map(|f| std::fs::read_to_string(f).unwrap()).collect();
-        if sources.iter().all(|s| numbers(s) > MOST_NUMBERS) {
+        let Some(files) = shader_files(&recipe, folder.path()) else {
             no_shader.push(kind);
             continue;
-        }
+        };
+        let sources: Vec<String> = files.iter().map(|f| std::fs::read_to_string(f).unwrap()).collect();
         assert_eq!(files.len(), 2, "{kind}");
         for (path, source) in files.iter().zip(sources) {
             let lang = path.extension().and_then(|e| e.to_str()).unwrap();
