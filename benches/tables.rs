@@ -3,14 +3,14 @@
 //! `cargo bench --bench tables` prints a table; nothing is asserted. All threads.
 #![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs, reason = "a report")]
 
+use brdfbake::cancel::Cancel;
 use brdfbake::recipe::preset;
 use brdfbake::tables::driver::{self, OnMiss, Options};
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 fn main() {
     let plan = preset("everything").unwrap().plan().unwrap();
-    let cancel = AtomicBool::new(false);
+    let cancel = Cancel::new();
     println!("\n### Every kind of table at the default tolerance\n");
     println!(
         "| table | texels | time | evaluations a texel | largest error | asked |\n|---|---|---|---|---|---|"

@@ -5,6 +5,7 @@
 //!
 //! | rank | room | holds |
 //! |---|---|---|
+//! | 0 | [`cancel`] | the token that stops work from outside |
 //! | 0 | [`cite`] | the bibliography |
 //! | 1 | [`math`] | frames, special functions, compensated sums |
 //! | 2 | [`grid`] | axes, tables, the reference reader, provenance |
@@ -21,6 +22,7 @@
 //! | 8 | [`pipeline`] | plan, bake, verify, encode, write |
 //! | 9 | `cli` | one file a verb (feature `cli`) |
 
+pub mod cancel;
 pub mod cite;
 #[cfg(feature = "cli")]
 pub mod cli;

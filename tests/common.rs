@@ -7,11 +7,11 @@
     reason = "each test file uses a part"
 )]
 
+use brdfbake::cancel::Cancel;
 use brdfbake::grid::{Axis, Quantity, Table, Texel};
 use brdfbake::tables::driver::{self, BakeError, OnMiss, Options};
 use brdfbake::tables::spec::{Bound, Request};
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
 
 /// The folder of shared reference values, if `BRDFBAKE_SHARED` names it; says so if not.
 pub(crate) fn shared() -> Option<PathBuf> {
@@ -51,6 +51,6 @@ pub(crate) fn request(kind: &str, layout: &str, params: &str, axes: Vec<Axis>) -
 }
 
 pub(crate) fn bake(bound: &Bound, tolerance: f64) -> Result<Table, BakeError> {
-    let cancel = AtomicBool::new(false);
+    let cancel = Cancel::new();
     driver::bake(bound, Options { tolerance, on_miss: OnMiss::Fail, cancel: &cancel, progress: &|_| {} })
 }

@@ -8,6 +8,7 @@
 
 mod sample;
 
+use brdfbake::cancel::Cancel;
 use brdfbake::encode::atomic::{TEMPORARY, WriteError, check_writable, write_all};
 use brdfbake::encode::diff::{self, Tolerance};
 use brdfbake::encode::diff_files::{self, DiffError, FileDiff, PathDiff};
@@ -20,9 +21,8 @@ use brdfbake::report;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 
-static GO: AtomicBool = AtomicBool::new(false);
+static GO: Cancel = Cancel::new();
 
 fn image(values: &[f64]) -> Image {
     let plane = |name: &str, values: Vec<f64>| Plane {
@@ -224,7 +224,8 @@ fn files_are_written_whole_and_only_when_they_change() {
     assert_eq!(written(&files("3")), (1, 1));
     assert_eq!(fs::read(path("x/one")).unwrap(), b"3");
 
-    let stop = AtomicBool::new(true);
+    let stop = Cancel::new();
+    stop.set();
     assert!(matches!(write_all(&files("4"), &stop), Err(WriteError::Cancelled)));
     let twice = [files("4"), files("5")].concat();
     assert!(matches!(write_all(&twice, &GO), Err(WriteError::Twice(p)) if p == path("x/one")));

@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 
 const RANKS: &[(&str, u32)] = &[
+    ("cancel", 0),
     ("cite", 0),
     ("math", 1),
     ("grid", 2),

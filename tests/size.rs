@@ -1,12 +1,12 @@
 //! `size = "auto"`: the table that is found holds what was asked for, against integrals from elsewhere.
 #![allow(clippy::unwrap_used, reason = "test")]
 
+use brdfbake::cancel::Cancel;
 use brdfbake::encode::read;
 use brdfbake::grid::lookup;
 use brdfbake::pipeline::{PipelineError, Settings, Silent, run};
 use brdfbake::recipe::{Plan, parse};
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 const FACTORED: &str = r#"
 name = "auto"
@@ -27,7 +27,7 @@ warp = "sqrt"
 
 fn bake(plan: &Plan, out: &Path, jobs: usize) -> Result<brdfbake::pipeline::Outcome, PipelineError> {
     let settings = Settings { out: out.to_path_buf(), jobs: Some(jobs) };
-    run(plan, &settings, &AtomicBool::new(false), &Silent)
+    run(plan, &settings, &Cancel::new(), &Silent)
 }
 
 #[test]

@@ -2,6 +2,7 @@
 //! threads.
 #![allow(clippy::unwrap_used, clippy::print_stderr, clippy::cast_possible_truncation, reason = "test")]
 
+use brdfbake::cancel::Cancel;
 use brdfbake::encode::read;
 use brdfbake::grid::fit::{Samples, places};
 use brdfbake::grid::layout::Point;
@@ -10,7 +11,6 @@ use brdfbake::grid::{Axis, Grid, Quantity, Texel};
 use brdfbake::pipeline::{FileRecord, Settings, Silent, run};
 use brdfbake::recipe::{Plan, parse};
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 fn line(len: usize, texel: Texel) -> Grid {
     Grid::new(vec![Axis::new(Quantity::find("mu").unwrap(), len, texel)]).unwrap()
@@ -95,7 +95,7 @@ fn recipe(texels: &str, len: usize, texel: &str, more: &str) -> Plan {
 
 fn bake(plan: &Plan, out: &Path, jobs: usize) -> FileRecord {
     let settings = Settings { out: out.to_path_buf(), jobs: Some(jobs) };
-    let outcome = run(plan, &settings, &AtomicBool::new(false), &Silent).unwrap();
+    let outcome = run(plan, &settings, &Cancel::new(), &Silent).unwrap();
     outcome.manifest.tables[0].files[0].clone()
 }
 
@@ -229,7 +229,7 @@ fn a_size_is_found_for_fitted_texels() {
     let texels = ["exact", "auto"].map(|texels| {
         let dir = tempfile::tempdir().unwrap();
         let settings = Settings { out: dir.path().to_path_buf(), jobs: Some(2) };
-        let outcome = run(&plan(texels), &settings, &AtomicBool::new(false), &Silent).unwrap();
+        let outcome = run(&plan(texels), &settings, &Cancel::new(), &Silent).unwrap();
         let table = &outcome.manifest.tables[0];
         let practical = table.files[0].reconstruction.clone().unwrap().practical.unwrap();
         assert!(practical.largest.value <= 2e-2, "{texels}: {}", practical.largest.value);

@@ -2,11 +2,11 @@
 
 use super::progress::{self, Format};
 use super::{Exit, Failure, engine, output, scene, suggest};
+use crate::cancel::Cancel;
 use crate::pipeline::{self, PipelineError, Settings};
 use crate::recipe::{self, LoadError, Plan};
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 /// Arguments of `bake`.
 #[derive(Debug, clap::Args)]
@@ -47,7 +47,7 @@ pub struct Args {
 ///
 /// # Errors
 /// [`Failure`] with the exit code of the cause; the output folder is then as it was.
-pub fn run(args: &Args, cancel: &Arc<AtomicBool>) -> Result<Exit, Failure> {
+pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     let engine = args.engine.as_deref().map(engine::plan).transpose()?;
     if let (Some((engine, plan)), Some(error)) = (&engine, args.suggest) {
         let jobs = args.jobs.map(usize::from);

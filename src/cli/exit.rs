@@ -76,7 +76,8 @@ impl Failure {
 impl From<PipelineError> for Failure {
     fn from(error: PipelineError) -> Failure {
         let exit = match &error {
-            PipelineError::Bake { error: BakeError::Cancelled, .. }
+            PipelineError::Bake { error: BakeError::Cancelled(_), .. }
+            | PipelineError::Cancelled(_)
             | PipelineError::Write(WriteError::Cancelled) => Exit::Interrupted,
             PipelineError::Bake { error: BakeError::Missed { .. }, .. }
             | PipelineError::Size { .. }

@@ -1,6 +1,7 @@
 //! `brdfbake golden check|bless DIR`: golden-image tests of a recipe.
 
 use super::{Exit, Failure, bake, output, progress};
+use crate::cancel::Cancel;
 use crate::encode::atomic;
 use crate::encode::diff_files::{FileDiff, FolderDiff, PathDiff};
 use crate::encode::read;
@@ -10,7 +11,6 @@ use crate::recipe::Plan;
 use crate::report;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 /// Arguments of `golden`.
 #[derive(Debug, clap::Args)]
@@ -44,7 +44,7 @@ pub enum What {
 ///
 /// # Errors
 /// [`Failure`] for a folder that cannot be read, or a bake that fails; the committed outputs are then as they were.
-pub fn run(args: &Args, cancel: &Arc<AtomicBool>) -> Result<Exit, Failure> {
+pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     let golden = Golden::load(&args.folder).map_err(failure)?;
     let plan = plan(&golden, &args.folder)?;
     let jobs = args.jobs.map(usize::from);
@@ -93,7 +93,7 @@ fn draw(
     committed: &Path,
     fresh: &Path,
     target: &Path,
-    cancel: &Arc<AtomicBool>,
+    cancel: &Arc<Cancel>,
 ) -> Result<(), Failure> {
     let mut files = Vec::new();
     for (name, _) in diff.files.iter().filter(|(_, d)| matches!(d, FileDiff::Image(_))) {

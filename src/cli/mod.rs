@@ -18,10 +18,10 @@ pub mod progress;
 pub mod scene;
 mod suggest;
 
+use crate::cancel::Cancel;
 use clap::{Parser, Subcommand};
 pub use exit::{Exit, Failure};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 /// Bakes BRDF lookup textures to a tolerance, and verifies them as it bakes.
 #[derive(Debug, Parser)]
@@ -61,7 +61,7 @@ enum Verb {
 ///
 /// # Errors
 /// [`Failure`] carries the message and the exit code.
-pub fn run(cli: Cli, cancel: &Arc<AtomicBool>) -> Result<Exit, Failure> {
+pub fn run(cli: Cli, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     match cli.verb {
         Verb::Bake(args) => bake::run(&args, cancel),
         Verb::Inspect(args) => inspect::run(&args),
@@ -81,10 +81,10 @@ pub fn run(cli: Cli, cancel: &Arc<AtomicBool>) -> Result<Exit, Failure> {
 #[must_use]
 pub fn main() -> std::process::ExitCode {
     let cli = Cli::parse();
-    let cancel = Arc::new(AtomicBool::new(false));
+    let cancel = Arc::new(Cancel::new());
     let flag = Arc::clone(&cancel);
     // A second interrupt while files are being moved changes nothing: the first one is honoured at the next texel.
-    let _ = ctrlc::set_handler(move || flag.store(true, std::sync::atomic::Ordering::Relaxed));
+    let _ = ctrlc::set_handler(move || flag.set());
     let exit = match run(cli, &cancel) {
         Ok(exit) => exit,
         Err(failure) => {

@@ -1,11 +1,11 @@
 //! `brdfbake plot MODEL`: the lobe as a polar plot in the plane of incidence, as SVG or PNG.
 
 use super::{Exit, Failure, albedo, output};
+use crate::cancel::Cancel;
 use crate::encode::atomic;
 use crate::report::plot::{self, Scale};
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 /// Arguments of `plot`.
 #[derive(Debug, clap::Args)]
@@ -30,7 +30,7 @@ pub struct Args {
 ///
 /// # Errors
 /// [`Failure`] for an unknown model, a bad parameter or angle, a delta model, or a file that cannot be written.
-pub fn run(args: &Args, cancel: &Arc<AtomicBool>) -> Result<Exit, Failure> {
+pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     if let Some(bad) = args.angles.iter().find(|a| !(0.0..90.0).contains(*a)) {
         return Err(Failure::usage(format!("--angles {bad} outside [0, 90): degrees from the normal")));
     }

@@ -2,10 +2,10 @@
 
 use super::progress::Format;
 use super::{Exit, Failure, output};
+use crate::cancel::Cancel;
 use crate::pipeline::PipelineError;
 use crate::pipeline::suggest::{self, Size, Suggestion, Want};
 use crate::recipe::{Engine, Plan};
-use std::sync::atomic::AtomicBool;
 
 /// Where an error must hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -33,7 +33,7 @@ pub(super) fn run(
     domain: Domain,
     jobs: Option<usize>,
     format: Format,
-    cancel: &AtomicBool,
+    cancel: &Cancel,
 ) -> Result<Exit, Failure> {
     if !ERRORS.contains(&error) {
         return Err(Failure::usage(format!(

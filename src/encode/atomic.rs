@@ -7,10 +7,11 @@
 //! The temporary files are opened with the usual permissions (0666 less the umask), because `tempfile` would leave the
 //! results readable for their owner only.
 
+use crate::cancel::Cancel;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// How the names of temporary files begin; a file of this name is rubbish of a run that was killed.
 pub const TEMPORARY: &str = ".brdfbake-tmp-";
@@ -90,12 +91,12 @@ impl Drop for Pending<'_> {
 ///
 /// # Errors
 /// [`WriteError`]; all but [`WriteError::Rename`] leave every file as it was.
-pub fn write_all(files: &[(PathBuf, Vec<u8>)], cancel: &AtomicBool) -> Result<Written, WriteError> {
+pub fn write_all(files: &[(PathBuf, Vec<u8>)], cancel: &Cancel) -> Result<Written, WriteError> {
     check_targets(files)?;
     let mut pending = Pending::default();
     let mut result = Written::default();
     for (path, bytes) in files {
-        if cancel.load(Ordering::Relaxed) {
+        if cancel.is_set() {
             return Err(WriteError::Cancelled);
         }
         if holds(path, bytes) {
@@ -110,7 +111,7 @@ pub fn write_all(files: &[(PathBuf, Vec<u8>)], cancel: &AtomicBool) -> Result<Wr
         pending.0.push((temporary, path));
         file.write_all(bytes).and_then(|()| file.sync_all()).map_err(failed)?;
     }
-    if cancel.load(Ordering::Relaxed) {
+    if cancel.is_set() {
         return Err(WriteError::Cancelled);
     }
     result.written = pending.0.len();

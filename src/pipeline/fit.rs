@@ -1,16 +1,15 @@
 //! Texels fitted to the reader: the truth at a fine grid of points, and the values that read closest to it.
 
 use super::PipelineError;
+use crate::cancel::Cancel;
 use crate::grid::Table;
 use crate::grid::fit::{Objective, Samples, places, places_count};
 use crate::grid::layout::Point;
 use crate::integrate::{MAX_CHANNELS, Sums};
 use crate::recipe::PlannedTable;
 use crate::tables::Bound;
-use crate::tables::driver::BakeError;
 use crate::verify::reconstruction::in_practical_domain;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Intervals into which a cell is divided along each axis, with the most points for which they are taken; the first that
 /// fits is. Small tables can have a ridge within a cell, which four intervals miss.
@@ -99,7 +98,7 @@ pub(super) fn fit(
     table: &Table,
     tolerance: f64,
     quick: bool,
-    cancel: &AtomicBool,
+    cancel: &Cancel,
 ) -> Result<Fitted, PipelineError> {
     let grid = &table.grid;
     let choices: &[(usize, usize)] = if quick { &PER_CELL_QUICK } else { &PER_CELL };
@@ -110,7 +109,7 @@ pub(super) fn fit(
         limit: LIMIT,
     })?;
     let truth = |(x, area): &([f64; crate::grid::layout::MAX_AXES], f64)| {
-        if cancel.load(Ordering::Relaxed) {
+        if cancel.is_set() {
             return None;
         }
         let point = grid.at_coordinates(x);
@@ -118,9 +117,7 @@ pub(super) fn fit(
         Some((point, *area, value))
     };
     let truth: Vec<(Point, f64, Sums)> = places(grid, per_cell).par_iter().filter_map(truth).collect();
-    if cancel.load(Ordering::Relaxed) {
-        return Err(PipelineError::Bake { table: planned.name.clone(), error: BakeError::Cancelled });
-    }
+    cancel.check()?;
     let samples = Samples::new(grid, truth.iter().map(|(p, area, _)| (p, *area)));
     let n = table.channels.len();
     let channel = |c: usize| {

@@ -14,13 +14,13 @@ mod texels;
 pub use event::{Event, Extremum, Progress, Silent};
 pub use manifest::{FileRecord, MANIFEST, Manifest, TableRecord};
 
+use crate::cancel::{Cancel, Cancelled};
 use crate::encode::atomic::{self, WriteError};
 use crate::encode::{self, EncodeError, RangeFault};
 use crate::recipe::{Plan, PlannedTable};
 use crate::tables::driver::BakeError;
 use crate::verify::Finding;
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use table::Made;
 
@@ -107,6 +107,9 @@ pub enum PipelineError {
         #[source]
         error: EncodeError,
     },
+    /// Stopped from outside.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// Files could not be written.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -150,7 +153,7 @@ pub struct Outcome {
 pub fn run(
     plan: &Plan,
     settings: &Settings,
-    cancel: &AtomicBool,
+    cancel: &Cancel,
     progress: &dyn Progress,
 ) -> Result<Outcome, PipelineError> {
     let start = Instant::now();

@@ -10,6 +10,7 @@
 
 use super::texels::Source;
 use super::{PipelineError, fit};
+use crate::cancel::Cancel;
 use crate::encode::Storage;
 use crate::grid::layout::{Point, combination};
 use crate::grid::provenance::SizeRecord;
@@ -19,7 +20,7 @@ use crate::recipe::{PlannedTable, Sizing};
 use crate::tables::Bound;
 use crate::verify::reconstruction::{Probe, in_practical_domain};
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Lengths that are tried.
 const LENGTHS: [usize; 20] =
@@ -50,7 +51,7 @@ const SHARE: f64 = 0.02;
 pub(super) fn resolve(
     planned: &PlannedTable,
     sizing: &Sizing,
-    cancel: &AtomicBool,
+    cancel: &Cancel,
 ) -> Result<PlannedTable, PipelineError> {
     let search = Search::new(planned, sizing, cancel)?;
     let mut sets = vec![search.axes().to_vec()];
@@ -92,8 +93,8 @@ struct Search<'a> {
     sizing: &'a Sizing,
     storages: Vec<Storage>,
     tolerance: f64,
-    cancel: &'a AtomicBool,
-    trials: std::sync::atomic::AtomicUsize,
+    cancel: &'a Cancel,
+    trials: AtomicUsize,
     /// Least error of all full trials.
     least: std::sync::Mutex<f64>,
 }
@@ -102,7 +103,7 @@ impl<'a> Search<'a> {
     fn new(
         planned: &'a PlannedTable,
         sizing: &'a Sizing,
-        cancel: &'a AtomicBool,
+        cancel: &'a Cancel,
     ) -> Result<Search<'a>, PipelineError> {
         let storages = planned.outputs.iter().filter_map(|o| Storage::find(&o.storage)).collect();
         Ok(Search {
@@ -140,11 +141,7 @@ impl<'a> Search<'a> {
     }
 
     fn cancelled(&self) -> Result<(), PipelineError> {
-        if self.cancel.load(Ordering::Relaxed) {
-            let error = crate::tables::driver::BakeError::Cancelled;
-            return Err(PipelineError::Bake { table: self.planned.name.clone(), error });
-        }
-        Ok(())
+        Ok(self.cancel.check()?)
     }
 
     /// Values of a grid; NaN where the integral fails (the laws report those in the end).

@@ -6,6 +6,7 @@
 //! recipe is baked and measured: the numbers are those of the text that is printed.
 
 use super::{PipelineError, Silent, size, table};
+use crate::cancel::Cancel;
 use crate::encode::code::reader::{self, Decode};
 use crate::encode::{self, Storage};
 use crate::grid::provenance::Reconstruction;
@@ -15,7 +16,6 @@ use crate::recipe::{self, Engine, Output, Plan, PlannedTable, Reader, Sizing, Ta
 use crate::tables::ModelUse;
 use crate::tables::spec::Request;
 use serde::Serialize;
-use std::sync::atomic::AtomicBool;
 
 /// Least roughness of a suggested table: below, a mirror begins, which no texel can follow. Shaders clamp there or above.
 const LEAST_ROUGHNESS: f64 = 0.01;
@@ -89,7 +89,7 @@ pub fn suggest(
     engine: &Engine,
     plan: &Plan,
     want: Want,
-    cancel: &AtomicBool,
+    cancel: &Cancel,
 ) -> Result<Vec<Suggestion>, PipelineError> {
     plan.tables.iter().enumerate().map(|(i, planned)| one(engine, plan, planned, i, want, cancel)).collect()
 }
@@ -100,7 +100,7 @@ fn one(
     planned: &PlannedTable,
     index: usize,
     want: Want,
-    cancel: &AtomicBool,
+    cancel: &Cancel,
 ) -> Result<Suggestion, PipelineError> {
     let mut result = Suggestion { table: planned.name.clone(), own: None, found: None, notes: Vec::new() };
     let language = match (engine.reader, planned.bound.spec.kind.id) {
@@ -160,7 +160,7 @@ struct Search<'a> {
     planned: &'a PlannedTable,
     want: Want,
     language: &'static str,
-    cancel: &'a AtomicBool,
+    cancel: &'a Cancel,
 }
 
 impl Search<'_> {

@@ -5,6 +5,7 @@ use super::fit;
 use super::manifest::tool;
 use super::texels::{Chosen, Source};
 use super::{Event, Extremum, FileRecord, PipelineError, Progress, TableRecord, size};
+use crate::cancel::Cancel;
 use crate::encode::{self, EncodeInput, Shape, Storage};
 use crate::grid::Provenance;
 use crate::grid::provenance::{AxisRecord, Encoding, Integration, RecipeId, SCHEMA, SizeRecord, Subject};
@@ -13,7 +14,6 @@ use crate::recipe::{Output, Plan, PlannedTable};
 use crate::tables::driver::{self, Options};
 use crate::tables::{Bound, Spec};
 use crate::verify::{self, Verified, reconstruction::Probe};
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// Most points at which a table is compared with fresh integrals between its texels.
@@ -29,7 +29,7 @@ pub(super) fn make(
     plan: &Plan,
     planned: &PlannedTable,
     index: usize,
-    cancel: &AtomicBool,
+    cancel: &Cancel,
     progress: &dyn Progress,
 ) -> Result<Made, PipelineError> {
     let name = planned.name.as_str();

@@ -4,9 +4,10 @@
 //! not depend on the number of threads.
 
 use super::{Bound, TexelError};
+use crate::cancel::{Cancel, Cancelled};
 use crate::grid::Table;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What to do with a texel whose error estimate stays above the tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -26,7 +27,7 @@ pub struct Options<'a> {
     /// What to do with a texel that misses it.
     pub on_miss: OnMiss,
     /// Set from outside to stop.
-    pub cancel: &'a AtomicBool,
+    pub cancel: &'a Cancel,
     /// Called with the number of finished texels.
     pub progress: &'a (dyn Fn(usize) + Sync),
 }
@@ -69,8 +70,8 @@ pub enum BakeError {
         estimate: f64,
     },
     /// Stopped from outside.
-    #[error("interrupted")]
-    Cancelled,
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// Most texels in one task.
@@ -128,9 +129,7 @@ fn bake_row(bound: &Bound, texels: std::ops::Range<usize>, options: Options<'_>)
     let grid = &bound.spec.grid;
     let mut row = Row { values: Vec::new(), errors: Vec::new(), evaluations: Vec::new() };
     for texel in texels {
-        if options.cancel.load(Ordering::Relaxed) {
-            return Err(BakeError::Cancelled);
-        }
+        options.cancel.check()?;
         let e = bound
             .baker
             .texel(grid.texel(texel).values(), options.tolerance)

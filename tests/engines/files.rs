@@ -72,7 +72,7 @@ fn tables_in_one_exr_are_its_parts() {
     // the same bytes again, with another number of threads
     let again = tempfile::tempdir().unwrap();
     let settings = brdfbake::pipeline::Settings { out: again.path().to_owned(), jobs: Some(1) };
-    let cancel = std::sync::atomic::AtomicBool::new(false);
+    let cancel = brdfbake::cancel::Cancel::new();
     brdfbake::pipeline::run(&plan, &settings, &cancel, &brdfbake::pipeline::Silent).unwrap();
     assert_eq!(bytes, std::fs::read(again.path().join("set.exr")).unwrap());
     // each part holds what its table holds in a file of its own

@@ -2,18 +2,18 @@
 
 use crate::compare::truth;
 use crate::support::{Texture, bake, picture};
+use brdfbake::cancel::Cancel;
 use brdfbake::pipeline::suggest::{Suggestion, Want, suggest};
 use brdfbake::recipe::{Reader, engine, parse};
 use naga::front::{glsl, wgsl};
 use naga::{BinaryOperator, Expression, Function, Handle, Literal, MathFunction, Module, Statement};
-use std::sync::atomic::AtomicBool;
 
 fn suggested(id: &str, table: &str, error: f64, practical: bool) -> Suggestion {
     let engine = engine(id).unwrap();
     let mut plan = engine.plan().unwrap();
     plan.tables.retain(|t| t.name == table);
     let want = Want { error, practical, longest: 96 };
-    suggest(engine, &plan, want, &AtomicBool::new(false)).unwrap().remove(0)
+    suggest(engine, &plan, want, &Cancel::new()).unwrap().remove(0)
 }
 
 /// What a function of a module returns: its expressions walked by hand, as a GPU would.

@@ -1,12 +1,12 @@
 //! Files of engines, baked and shipped, and the lookup that a shader does: written here anew, not taken from the library.
 
+use brdfbake::cancel::Cancel;
 use brdfbake::encode::read;
 use brdfbake::grid::fit::Texels;
 use brdfbake::pipeline::{self, Settings, Silent};
 use brdfbake::recipe::{self, Plan};
 use half::f16;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 
 /// A table as a texture: rows from the top, channels interleaved.
 #[derive(Debug, Clone)]
@@ -62,7 +62,7 @@ pub(crate) fn exact(mut plan: Plan) -> Plan {
 /// Bakes a plan into a folder and returns the paths of its files, one a table.
 pub(crate) fn bake(plan: &Plan, out: &Path) -> Vec<PathBuf> {
     let settings = Settings { out: out.to_owned(), jobs: Some(2) };
-    let outcome = pipeline::run(plan, &settings, &AtomicBool::new(false), &Silent).unwrap();
+    let outcome = pipeline::run(plan, &settings, &Cancel::new(), &Silent).unwrap();
     outcome.manifest.tables.iter().map(|t| out.join(&t.files[0].file)).collect()
 }
 

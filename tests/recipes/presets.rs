@@ -1,10 +1,10 @@
 //! The presets are the files of `presets/`; each parses, binds and is named as its file.
 
+use brdfbake::cancel::Cancel;
 use brdfbake::recipe::{PRESETS, preset};
 use brdfbake::tables::driver::{Options, bake};
 use std::collections::BTreeSet;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 #[test]
 fn presets_are_the_files_of_the_folder() {
@@ -68,7 +68,7 @@ const E: &[(f64, f64, f64)] = &[
 fn the_albedo_of_the_default_preset_is_read_as_well_as_its_comment_says() {
     let plan = preset("default").unwrap().plan().unwrap();
     let planned = plan.tables.iter().find(|t| t.name == "ggx-albedo").unwrap();
-    let cancel = AtomicBool::new(false);
+    let cancel = Cancel::new();
     let options = Options {
         tolerance: planned.tolerance,
         on_miss: planned.on_miss,

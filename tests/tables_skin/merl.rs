@@ -1,5 +1,6 @@
 //! The MERL binary, read by the index functions of the published reader (written here from its text, apart from the writer).
 
+use brdfbake::cancel::Cancel;
 use brdfbake::encode::Storage;
 use brdfbake::models::{self, Params};
 use brdfbake::pipeline::{self, Settings, Silent};
@@ -7,7 +8,6 @@ use brdfbake::recipe::{Output, Plan, TableRequest};
 use brdfbake::tables::merl::directions;
 use brdfbake::tables::spec::Request;
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
-use std::sync::atomic::AtomicBool;
 
 const BRDF_SAMPLING_RES_THETA_H: usize = 90;
 const BRDF_SAMPLING_RES_THETA_D: usize = 90;
@@ -116,7 +116,7 @@ fn file(model: &str, params: &str) -> Vec<u8> {
     let plan = Plan::from_requests("merl", vec![table]).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let settings = Settings { out: folder.path().to_owned(), jobs: Some(2) };
-    pipeline::run(&plan, &settings, &AtomicBool::new(false), &Silent).unwrap();
+    pipeline::run(&plan, &settings, &Cancel::new(), &Silent).unwrap();
     std::fs::read(folder.path().join("measured.binary")).unwrap()
 }
 
