@@ -9,7 +9,7 @@
 mod sample;
 
 use brdfbake::cancel::Cancel;
-use brdfbake::encode::atomic::{TEMPORARY, WriteError, check_writable, write_all};
+use brdfbake::encode::atomic::{TEMPORARY, WriteError, sweep, write_all};
 use brdfbake::encode::diff::{self, Tolerance};
 use brdfbake::encode::diff_files::{self, DiffError, FileDiff, PathDiff};
 use brdfbake::encode::diff_json::first_difference;
@@ -217,8 +217,6 @@ fn files_are_written_whole_and_only_when_they_change() {
     let path = |name: &str| root.path().join(name);
     let files = |x: &str| vec![(path("x/one"), x.as_bytes().to_vec()), (path("x/y/two"), b"2".to_vec())];
     let written = |files: &[_]| write_all(files, &GO).map(|w| (w.written, w.unchanged)).unwrap();
-    check_writable(&path("x/y/z")).unwrap();
-    assert!(!path("x").exists(), "the check leaves nothing");
     assert_eq!(written(&files("1")), (2, 0));
     assert_eq!(written(&files("1")), (0, 2));
     assert_eq!(written(&files("3")), (1, 1));
@@ -234,12 +232,28 @@ fn files_are_written_whole_and_only_when_they_change() {
     // A file stands where a folder is needed.
     let below = [files("4"), vec![(path("x/one/three"), vec![])]].concat();
     assert!(matches!(write_all(&below, &GO), Err(WriteError::Folder { .. })));
-    assert!(check_writable(&path("x/one/three")).is_err());
-    assert!(check_writable(&path("x/one")).is_err());
 
     assert_eq!(fs::read(path("x/one")).unwrap(), b"3", "nothing was replaced");
     let names = |d: PathBuf| fs::read_dir(d).unwrap().count();
     assert_eq!((names(path("x")), names(path("x/y"))), (2, 1), "no temporary file is left");
+}
+
+#[test]
+fn temporary_files_of_killed_processes_are_swept() {
+    let root = tempfile::tempdir().unwrap();
+    let path = |name: &str| root.path().join(name);
+    let (dead, alive, kept) =
+        (path(&format!("{TEMPORARY}1-1")), path(&format!("{TEMPORARY}1-2")), path("brdfbake-tmp-"));
+    for path in [&dead, &alive, &kept] {
+        fs::write(path, b"half").unwrap();
+    }
+    let writing = fs::File::open(&alive).unwrap();
+    writing.lock().unwrap();
+    assert_eq!(sweep(root.path()).unwrap(), 1);
+    assert!(!dead.exists() && alive.exists() && kept.exists());
+    drop(writing);
+    assert_eq!(sweep(root.path()).unwrap(), 1);
+    assert!(!alive.exists());
 }
 
 #[cfg(unix)]

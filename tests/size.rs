@@ -26,7 +26,7 @@ warp = "sqrt"
 "#;
 
 fn bake(plan: &Plan, out: &Path, jobs: usize) -> Result<brdfbake::pipeline::Outcome, PipelineError> {
-    let settings = Settings { out: out.to_path_buf(), jobs: Some(jobs) };
+    let settings = Settings { jobs: Some(jobs), ..Settings::new(out) };
     run(plan, &settings, &Cancel::new(), &Silent)
 }
 

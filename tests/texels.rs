@@ -94,7 +94,7 @@ fn recipe(texels: &str, len: usize, texel: &str, more: &str) -> Plan {
 }
 
 fn bake(plan: &Plan, out: &Path, jobs: usize) -> FileRecord {
-    let settings = Settings { out: out.to_path_buf(), jobs: Some(jobs) };
+    let settings = Settings { jobs: Some(jobs), ..Settings::new(out) };
     let outcome = run(plan, &settings, &Cancel::new(), &Silent).unwrap();
     outcome.manifest.tables[0].files[0].clone()
 }
@@ -228,7 +228,7 @@ fn a_size_is_found_for_fitted_texels() {
     };
     let texels = ["exact", "auto"].map(|texels| {
         let dir = tempfile::tempdir().unwrap();
-        let settings = Settings { out: dir.path().to_path_buf(), jobs: Some(2) };
+        let settings = Settings { jobs: Some(2), ..Settings::new(dir.path()) };
         let outcome = run(&plan(texels), &settings, &Cancel::new(), &Silent).unwrap();
         let table = &outcome.manifest.tables[0];
         let practical = table.files[0].reconstruction.clone().unwrap().practical.unwrap();

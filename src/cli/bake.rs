@@ -1,9 +1,10 @@
 //! `brdfbake bake`.
 
+use super::limits::Limits;
 use super::progress::{self, Format};
 use super::{Exit, Failure, engine, output, scene, suggest};
 use crate::cancel::Cancel;
-use crate::pipeline::{self, PipelineError, Settings};
+use crate::pipeline::{self, PipelineError};
 use crate::recipe::{self, LoadError, Plan};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -29,9 +30,8 @@ pub struct Args {
     /// Output folder.
     #[arg(short, long, value_name = "DIR", default_value = "brdfbake-out")]
     out: PathBuf,
-    /// Number of threads; all cores if not given. The bytes do not depend on it.
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    jobs: Option<u16>,
+    #[command(flatten)]
+    limits: Limits,
     /// Print nothing but errors.
     #[arg(short, long)]
     quiet: bool,
@@ -50,8 +50,15 @@ pub struct Args {
 pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     let engine = args.engine.as_deref().map(engine::plan).transpose()?;
     if let (Some((engine, plan)), Some(error)) = (&engine, args.suggest) {
-        let jobs = args.jobs.map(usize::from);
-        return suggest::run(engine, plan, error, args.domain, jobs, args.message_format, cancel);
+        return suggest::run(
+            engine,
+            plan,
+            error,
+            args.domain,
+            args.limits.jobs(),
+            args.message_format,
+            cancel,
+        );
     }
     let (engine, plan) = match (engine, &args.scene) {
         (Some((engine, plan)), _) => (Some(engine), plan),
@@ -61,12 +68,13 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         },
         (None, None) => (None, plan(args.recipe.as_deref().unwrap_or("default"))?),
     };
+    let settings = args.limits.settings(&args.out);
     if args.dry_run {
+        pipeline::check(&plan, &settings)?;
         output::data(&pipeline::outputs(&plan).join("\n"));
         return Ok(Exit::Done);
     }
     let reporter = progress::reporter(args.message_format, args.quiet);
-    let settings = Settings { out: args.out.clone(), jobs: args.jobs.map(usize::from) };
     match pipeline::run(&plan, &settings, cancel, &*reporter) {
         Ok(outcome) => {
             let talks = !args.quiet && args.message_format == Format::Human;

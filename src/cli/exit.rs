@@ -1,7 +1,7 @@
 //! Exit codes, in one table.
 
-use crate::encode::atomic::WriteError;
 use crate::pipeline::PipelineError;
+use crate::pipeline::transaction::TransactionError;
 use crate::tables::driver::BakeError;
 
 /// The table of exit codes, for `--help` and README.
@@ -11,7 +11,7 @@ pub const TABLE: &str = "Exit codes:
   2    usage
   3    bad recipe or input
   4    a law, a tolerance or a comparison failed
-  5    input or output failed
+  5    input, output or resources (memory, threads, a locked folder) failed
   6    unsupported
   130  interrupted";
 
@@ -28,7 +28,7 @@ pub enum Exit {
     Input = 3,
     /// A law, a tolerance or a comparison failed.
     Failed = 4,
-    /// Reading or writing failed.
+    /// Reading, writing, or getting memory or threads failed.
     Io = 5,
     /// Something that is not supported.
     Unsupported = 6,
@@ -78,14 +78,15 @@ impl From<PipelineError> for Failure {
         let exit = match &error {
             PipelineError::Bake { error: BakeError::Cancelled(_), .. }
             | PipelineError::Cancelled(_)
-            | PipelineError::Write(WriteError::Cancelled) => Exit::Interrupted,
+            | PipelineError::Files(TransactionError::Cancelled) => Exit::Interrupted,
             PipelineError::Bake { error: BakeError::Missed { .. }, .. }
             | PipelineError::Size { .. }
             | PipelineError::Laws(_)
             | PipelineError::Range { .. } => Exit::Failed,
-            PipelineError::Bake { .. } => Exit::Input,
+            PipelineError::Bake { .. } | PipelineError::Files(TransactionError::Twice { .. }) => Exit::Input,
             PipelineError::Encode { .. } | PipelineError::Fit { .. } => Exit::Unsupported,
-            PipelineError::Write(_) => Exit::Io,
+            PipelineError::Jobs { .. } => Exit::Usage,
+            PipelineError::Files(_) | PipelineError::Threads { .. } => Exit::Io,
             _ => Exit::Internal,
         };
         let mut message = error.to_string();
@@ -96,6 +97,9 @@ impl From<PipelineError> for Failure {
             message.push_str(
                 "\n  To bake it all the same, add `waive = [{ law = \"...\", reason = \"...\" }]` to the table; the file will say so.",
             );
+        }
+        if matches!(error, PipelineError::Files(TransactionError::Busy { .. })) {
+            message.push_str(" (--lock-timeout SECONDS waits longer)");
         }
         Failure { message, exit }
     }

@@ -1,12 +1,13 @@
 //! `brdfbake golden check|bless DIR`: golden-image tests of a recipe.
 
+use super::limits::Limits;
 use super::{Exit, Failure, bake, output, progress};
 use crate::cancel::Cancel;
 use crate::encode::atomic;
 use crate::encode::diff_files::{FileDiff, FolderDiff, PathDiff};
 use crate::encode::read;
+use crate::pipeline;
 use crate::pipeline::golden::{Golden, GoldenError};
-use crate::pipeline::{self, Settings};
 use crate::recipe::Plan;
 use crate::report;
 use std::path::{Path, PathBuf};
@@ -26,9 +27,8 @@ pub struct Args {
     /// Print the result as JSON.
     #[arg(long)]
     json: bool,
-    /// Number of threads; all cores if not given.
-    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    jobs: Option<u16>,
+    #[command(flatten)]
+    limits: Limits,
 }
 
 /// What to do with a golden folder.
@@ -47,12 +47,9 @@ pub enum What {
 pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     let golden = Golden::load(&args.folder).map_err(failure)?;
     let plan = plan(&golden, &args.folder)?;
-    let jobs = args.jobs.map(usize::from);
     let quiet = progress::reporter(progress::Format::Human, true);
-    let bake = |out: &Path| {
-        let settings = Settings { out: out.to_path_buf(), jobs };
-        pipeline::run(&plan, &settings, cancel, &*quiet).map_err(Failure::from)
-    };
+    let bake =
+        |out: &Path| pipeline::run(&plan, &args.limits.settings(out), cancel, &*quiet).map_err(Failure::from);
     if args.what == What::Bless {
         let done = bake(&args.folder)?;
         output::talk(&format!(

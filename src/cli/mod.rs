@@ -11,14 +11,17 @@ pub mod fit;
 pub mod golden;
 pub mod inspect;
 pub mod laws;
+pub mod limits;
 pub mod list;
 pub mod output;
 pub mod plot;
 pub mod progress;
 pub mod scene;
 mod suggest;
+pub mod verify;
 
 use crate::cancel::Cancel;
+use crate::pipeline::pool;
 use clap::{Parser, Subcommand};
 pub use exit::{Exit, Failure};
 use std::sync::Arc;
@@ -39,6 +42,8 @@ enum Verb {
     Inspect(inspect::Args),
     /// Compare two images or two output folders.
     Diff(diff::Args),
+    /// Check that an output folder holds what its manifest says.
+    Verify(verify::Args),
     /// Compare a fresh bake with committed outputs, or commit them.
     Golden(golden::Args),
     /// Evaluate models and functions at directions read as CSV; append the value.
@@ -66,12 +71,13 @@ pub fn run(cli: Cli, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         Verb::Bake(args) => bake::run(&args, cancel),
         Verb::Inspect(args) => inspect::run(&args),
         Verb::Diff(args) => diff::run(&args),
+        Verb::Verify(args) => verify::run(&args),
         Verb::Golden(args) => golden::run(&args, cancel),
         Verb::Eval(args) => eval::run(&args),
         Verb::Albedo(args) => albedo::run(&args),
-        Verb::Laws(args) => laws::run(&args),
+        Verb::Laws(args) => pool(None)?.install(|| laws::run(&args)),
         Verb::Plot(args) => plot::run(&args, cancel),
-        Verb::Fit(args) => fit::run(&args),
+        Verb::Fit(args) => pool(None)?.install(|| fit::run(&args)),
         Verb::List(args) => list::run(&args),
         Verb::Describe(args) => describe::run(&args),
     }

@@ -1,7 +1,7 @@
 //! Progress for people: a bar per table and a total on a terminal, plain lines elsewhere, JSON lines on request.
 
 use super::output;
-use crate::pipeline::{Event, Progress};
+use crate::pipeline::{Event, Progress, Recovery};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::Mutex;
@@ -94,7 +94,7 @@ impl Bars {
                     bar.finish_and_clear();
                 }
             }
-            Event::Finding { .. } | Event::SizeFound { .. } => {}
+            _ => {}
         }
     }
 }
@@ -122,6 +122,18 @@ fn line(event: &Event<'_>) -> Option<String> {
             let open = tables.iter().filter(|t| t.size.contains(&0)).count();
             let more = if open > 0 { format!(", size of {open} to be found") } else { String::new() };
             format!("recipe {recipe}: {} tables, {texels} texels{more}", tables.len())
+        }
+        Event::Waiting { folder, seconds } => format!(
+            "waiting for another run that writes into {}, at most {seconds} s (--lock-timeout)",
+            folder.display()
+        ),
+        Event::Recovered { folder, recovery } => {
+            let done = match recovery {
+                Recovery::Finished => "its files are in place now",
+                Recovery::RolledBack => "the files before it are back",
+                Recovery::Discarded => "it had replaced nothing, and its temporary files are removed",
+            };
+            format!("a run that was killed had left files in {}: {done}", folder.display())
         }
         Event::SizeFound { table, size, coordinates, record, seconds, .. } => {
             let size = size.iter().map(ToString::to_string).collect::<Vec<_>>().join(" x ");

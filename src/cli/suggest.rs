@@ -3,7 +3,7 @@
 use super::progress::Format;
 use super::{Exit, Failure, output};
 use crate::cancel::Cancel;
-use crate::pipeline::PipelineError;
+use crate::pipeline;
 use crate::pipeline::suggest::{self, Size, Suggestion, Want};
 use crate::recipe::{Engine, Plan};
 
@@ -43,11 +43,7 @@ pub(super) fn run(
         )));
     }
     let want = Want { error, practical: domain == Domain::Practical, longest: LONGEST };
-    let jobs = jobs.unwrap_or(0);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(jobs)
-        .build()
-        .map_err(|e| PipelineError::Threads { jobs, message: e.to_string() })?;
+    let pool = pipeline::pool(jobs)?;
     let all = pool.install(|| suggest::suggest(engine, plan, want, cancel))?;
     for suggestion in &all {
         match format {

@@ -1,19 +1,22 @@
-//! Puts a set of files on disk so that a reader never sees half of one, and an interrupted run leaves the old ones.
+//! Puts files on disk so that a reader never sees half of one.
 //!
 //! Every file is first written in full under a temporary name next to its target and flushed to the disk. Only when all
 //! are there are they renamed, one by one. Until the first rename nothing that existed has changed; a system that dies
-//! between two renames leaves some new and some old files, each of them whole.
+//! between two renames leaves some new and some old files, each of them whole. The outputs of a bake are held together by more:
+//! [`transaction`](crate::pipeline::transaction).
 //!
-//! The temporary files are opened with the usual permissions (0666 less the umask), because `tempfile` would leave the
-//! results readable for their owner only.
+//! A temporary file is locked while it is written, so that [`sweep`] can tell one of a killed process.
 
 use crate::cancel::Cancel;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
+use tempfile::NamedTempFile;
 
-/// How the names of temporary files begin; a file of this name is rubbish of a run that was killed.
+/// How names begin in folders of results that are no results: locks, temporary files.
+pub const HIDDEN: &str = ".brdfbake-";
+
+/// How the names of temporary files begin; a file of this name that nobody has locked is rubbish of a run that was killed.
 pub const TEMPORARY: &str = ".brdfbake-tmp-";
 
 /// What [`write_all`] did.
@@ -74,26 +77,14 @@ pub enum WriteError {
     },
 }
 
-/// Temporary files that are removed unless they reached their names.
-#[derive(Default)]
-struct Pending<'a>(Vec<(PathBuf, &'a Path)>);
-
-impl Drop for Pending<'_> {
-    fn drop(&mut self) {
-        for (temporary, _) in &self.0 {
-            // Nothing can be done about a temporary file that cannot be removed, and the first error is the one to tell.
-            let _ = fs::remove_file(temporary);
-        }
-    }
-}
-
 /// Writes all files or none; see the module. `cancel` is looked at between files, up to the first rename.
 ///
 /// # Errors
 /// [`WriteError`]; all but [`WriteError::Rename`] leave every file as it was.
 pub fn write_all(files: &[(PathBuf, Vec<u8>)], cancel: &Cancel) -> Result<Written, WriteError> {
     check_targets(files)?;
-    let mut pending = Pending::default();
+    // temporary files are removed when they are dropped
+    let mut pending: Vec<(NamedTempFile, &Path)> = Vec::new();
     let mut result = Written::default();
     for (path, bytes) in files {
         if cancel.is_set() {
@@ -107,35 +98,16 @@ pub fn write_all(files: &[(PathBuf, Vec<u8>)], cancel: &Cancel) -> Result<Writte
         fs::create_dir_all(folder)
             .map_err(|source| WriteError::Folder { path: folder.to_owned(), source })?;
         let failed = |source| WriteError::Write { path: path.clone(), source };
-        let (temporary, mut file) = create(folder).map_err(failed)?;
-        pending.0.push((temporary, path));
-        file.write_all(bytes).and_then(|()| file.sync_all()).map_err(failed)?;
+        let mut file = create(folder).map_err(failed)?;
+        file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(failed)?;
+        pending.push((file, path));
     }
     if cancel.is_set() {
         return Err(WriteError::Cancelled);
     }
-    result.written = pending.0.len();
+    result.written = pending.len();
     rename_all(pending)?;
     Ok(result)
-}
-
-/// Tells before hours of work whether a folder, which need not exist yet, can be written into.
-///
-/// # Errors
-/// [`WriteError::Folder`] with the system's message.
-pub fn check_writable(folder: &Path) -> Result<(), WriteError> {
-    let failed = |source| WriteError::Folder { path: folder.to_owned(), source };
-    let mut there = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    while let Err(e) = fs::metadata(there) {
-        match there.parent() {
-            Some(up) if e.kind() == ErrorKind::NotFound => {
-                there = if up.as_os_str().is_empty() { Path::new(".") } else { up };
-            }
-            _ => return Err(failed(e)),
-        }
-    }
-    let (temporary, _) = create(there).map_err(failed)?;
-    fs::remove_file(temporary).map_err(failed)
 }
 
 fn check_targets(files: &[(PathBuf, Vec<u8>)]) -> Result<(), WriteError> {
@@ -161,35 +133,62 @@ fn holds(path: &Path, bytes: &[u8]) -> bool {
         && fs::read(path).is_ok_and(|old| old == bytes)
 }
 
-/// Opens a new file under a name that no other process and no other call of this one has.
-fn create(folder: &Path) -> io::Result<(PathBuf, File)> {
-    static COUNTER: AtomicU64 = AtomicU64::new(0);
-    for _ in 0..1000 {
-        let n = COUNTER.fetch_add(1, Ordering::Relaxed);
-        let path = folder.join(format!("{TEMPORARY}{}-{n}", std::process::id()));
-        match OpenOptions::new().write(true).create_new(true).open(&path) {
-            // A killed process of the same id left its rubbish: try the next number.
-            Err(e) if e.kind() == ErrorKind::AlreadyExists => {}
-            Ok(file) => return Ok((path, file)),
-            Err(e) => return Err(e),
+/// A new file under a name of its own, with the usual permissions (0666 less the umask), and locked.
+fn create(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(TEMPORARY);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    loop {
+        let file = builder.tempfile_in(folder)?;
+        // where there are no locks, nobody sweeps either
+        let _ = file.as_file().try_lock();
+        // a run that sweeps may have seen it before it was locked
+        if fs::symlink_metadata(file.path()).is_ok() {
+            return Ok(file);
         }
     }
-    Err(io::Error::new(ErrorKind::AlreadyExists, "a thousand temporary names are taken"))
 }
 
-fn rename_all(mut pending: Pending<'_>) -> Result<(), WriteError> {
-    let all = pending.0.len();
-    let mut folders = Vec::new();
-    while let Some((temporary, path)) = pending.0.first() {
-        let path = *path;
-        if let Err(source) = rename(temporary, path) {
-            let done = all - pending.0.len();
-            return Err(WriteError::Rename { path: path.to_owned(), source, done, all });
+/// Removes the temporary files in a folder that no process is writing; returns how many.
+///
+/// # Errors
+/// If the folder cannot be read. What cannot be removed is left.
+pub fn sweep(folder: &Path) -> io::Result<usize> {
+    let mut removed = 0;
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(TEMPORARY));
+        if !ours || !entry.file_type()?.is_file() {
+            continue;
         }
+        let path = entry.path();
+        let idle = File::open(&path).is_ok_and(|file| file.try_lock().is_ok());
+        removed += usize::from(idle && fs::remove_file(&path).is_ok());
+    }
+    Ok(removed)
+}
+
+fn rename_all(pending: Vec<(NamedTempFile, &Path)>) -> Result<(), WriteError> {
+    let all = pending.len();
+    let mut folders = Vec::new();
+    for (done, (file, path)) in pending.into_iter().enumerate() {
+        // open, and so locked, until it has its name
+        let (_open, temporary) = file.into_parts();
+        rename(&temporary, path).map_err(|source| WriteError::Rename {
+            path: path.to_owned(),
+            source,
+            done,
+            all,
+        })?;
+        // there is nothing left to remove
+        let _ = temporary.keep();
         if !folders.contains(&folder(path)) {
             folders.push(folder(path));
         }
-        pending.0.remove(0);
     }
     if cfg!(unix) {
         // The names themselves must survive a power cut too. Some file systems cannot do that; the files are whole anyway.
@@ -201,7 +200,7 @@ fn rename_all(mut pending: Pending<'_>) -> Result<(), WriteError> {
 }
 
 /// Renames; on Windows a scanner or indexer may hold the target for a moment, so try for half a second.
-fn rename(from: &Path, to: &Path) -> io::Result<()> {
+pub(crate) fn rename(from: &Path, to: &Path) -> io::Result<()> {
     let mut tries = if cfg!(windows) { 10 } else { 0 };
     loop {
         match fs::rename(from, to) {

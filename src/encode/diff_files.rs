@@ -1,6 +1,6 @@
 //! Compares two files or two folders of outputs. Pictures are compared as values, JSON as JSON, anything else as bytes.
 
-use super::atomic::TEMPORARY;
+use super::atomic::HIDDEN;
 use super::diff::{self, ImageDiff, Tolerance};
 use super::diff_json::{self, JsonDiff};
 use super::read::{self, ReadError};
@@ -159,7 +159,8 @@ pub fn files(a: &Path, b: &Path, tolerance: Tolerance) -> Result<FileDiff, DiffE
     compare([a, b], [&x, &y], tolerance)
 }
 
-/// Compares the files of two folders, matched by relative path. Temporary files of a killed run are left out.
+/// Compares the files of two folders, matched by relative path. What a killed run left (names with [`HIDDEN`]) is
+/// left out.
 ///
 /// # Errors
 /// [`DiffError`] if a file that both folders have, with different bytes, cannot be read.
@@ -224,9 +225,12 @@ fn list(root: &Path, below: &str, depth: usize, into: &mut BTreeSet<String>) -> 
         let entry = entry.map_err(io)?;
         let name = entry.file_name().to_string_lossy().into_owned();
         let relative = if below.is_empty() { name.clone() } else { format!("{below}/{name}") };
+        if name.starts_with(HIDDEN) {
+            continue;
+        }
         if entry.file_type().map_err(io)?.is_dir() {
             list(root, &relative, depth + 1, into)?;
-        } else if !name.starts_with(TEMPORARY) {
+        } else {
             into.insert(relative);
         }
     }

@@ -2,12 +2,15 @@
 //!
 //! The blocks are put into the picture here and not by the `exr` crate's own collector: that one trusts the offset
 //! table, and a table that names one block twice and another never gives a picture with zeros in it and no error.
+//!
+//! Memory is asked for by what the blocks hold, not by the size that the header tells: a block must not claim more pixels than its bytes
+//! can stand for, and the picture is made when all of its blocks are there.
 
+use super::exr_chunks::Chunks;
 use super::read::{Claim, Image, MAX_SAMPLES, Plane, ReadError, Sample};
 use crate::grid::provenance::ATTRIBUTE;
 use ::exr::block::UncompressedBlock;
 use ::exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock};
-use ::exr::block::reader::ChunksReader;
 use ::exr::error::{Error, Result as ExrResult};
 use ::exr::meta::MetaData;
 use ::exr::meta::attribute::{AttributeValue, Compression, SampleType, Text};
@@ -29,22 +32,19 @@ pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
 }
 
 fn decode(bytes: &[u8]) -> Result<Image, ReadError> {
-    let reader = ::exr::block::read(Cursor::new(bytes), false).map_err(library)?;
-    let headers = reader.headers();
+    let meta = ::exr::block::read(Cursor::new(bytes), false).map_err(library)?.into_meta_data();
+    let headers = meta.headers.as_slice();
     let (width, height) = size(headers)?;
     let provenance = claims(headers.iter().filter_map(claim).collect());
     let mut picture = Picture::new(headers)?;
-    let mut chunks = reader
-        .filter_chunks(false, |_, tile, _| tile.level_index.0 == 0 && tile.level_index.1 == 0)
-        .map_err(library)?;
-    while let Some(chunk) = chunks.read_next_chunk() {
-        chunk.and_then(|c| picture.insert(chunks.meta_data(), c)).map_err(library)?;
+    for chunk in Chunks::new(bytes, headers).map_err(library)? {
+        chunk.and_then(|c| picture.insert(&meta, c)).map_err(library)?;
     }
     if picture.pixels_left > 0 {
         return Err(fault(format!("{} pixels are in no block of the file", picture.pixels_left)));
     }
     let parts = slices(&provenance, picture.first.len());
-    let channels = stack(picture.planes, parts);
+    let channels = stack(picture.finish(headers).map_err(library)?, parts);
     let height = channels.first().map_or(height, |c| c.values.len() / width.max(1));
     Ok(Image { format: FORMAT, width, height, channels, provenance })
 }
@@ -131,11 +131,13 @@ fn claims(mut all: Vec<Claim>) -> Option<Claim> {
     }
 }
 
-/// The planes of all parts while blocks come in.
+/// The blocks of all parts while they come in.
 struct Picture {
+    /// Without values yet.
     planes: Vec<Plane>,
     /// Index of the first plane of each part.
     first: Vec<usize>,
+    blocks: Vec<UncompressedBlock>,
     /// Part, x, y of the blocks that are in.
     seen: BTreeSet<(usize, usize, usize)>,
     pixels_left: usize,
@@ -150,8 +152,7 @@ impl Picture {
         for header in headers {
             first.push(planes.len());
             width = header.layer_size.0;
-            let area = width * header.layer_size.1;
-            pixels_left += area;
+            pixels_left += width * header.layer_size.1;
             let part = header.own_attributes.layer_name.as_ref().filter(|_| headers.len() > 1);
             for channel in &header.channels.list {
                 let name = utf8(&channel.name);
@@ -164,15 +165,21 @@ impl Picture {
                     SampleType::F32 => Sample::Float,
                     SampleType::U32 => Sample::Uint32,
                 };
-                planes.push(Plane { name, sample, range: [0.0, 1.0], values: vec![0.0; area] });
+                planes.push(Plane { name, sample, range: [0.0, 1.0], values: Vec::new() });
             }
         }
-        Ok(Picture { planes, first, seen: BTreeSet::new(), pixels_left, width })
+        let (blocks, seen) = (Vec::new(), BTreeSet::new());
+        Ok(Picture { planes, first, blocks, seen, pixels_left, width })
     }
 
     fn insert(&mut self, meta: &MetaData, chunk: Chunk) -> ExrResult<()> {
         let layer = chunk.layer_index;
         let header = meta.headers.get(layer).ok_or_else(|| invalid("a block of no part"))?;
+        if let CompressedBlock::Tile(tile) = &chunk.compressed_block
+            && !tile.coordinates.is_largest_resolution_level()
+        {
+            return Ok(());
+        }
         guard(header, &chunk)?;
         let block = UncompressedBlock::decompress_chunk(chunk, meta, false)?;
         let (at, size) = (block.index.pixel_position, block.index.pixel_size);
@@ -181,21 +188,36 @@ impl Picture {
         }
         self.pixels_left =
             self.pixels_left.checked_sub(size.0 * size.1).ok_or_else(|| invalid("blocks overlap"))?;
-        let mut bytes = block.data.as_slice();
-        for y in at.1..at.1 + size.1 {
-            let row = y * self.width + at.0;
-            for plane in self.planes.iter_mut().skip(self.first[layer]).take(header.channels.list.len()) {
-                let width = if plane.sample == Sample::Half { 2 } else { 4 };
-                let line = bytes.split_at_checked(size.0 * width);
-                let slots = plane.values.get_mut(row..row + size.0);
-                let (Some((line, rest)), Some(slots)) = (line, slots) else {
-                    return Err(invalid("a block of the wrong size"));
-                };
-                fill(slots, line, plane.sample);
-                bytes = rest;
+        self.blocks.push(block);
+        Ok(())
+    }
+
+    /// The planes, when every block is there.
+    fn finish(mut self, headers: &[Header]) -> ExrResult<Vec<Plane>> {
+        for (layer, header) in headers.iter().enumerate() {
+            let area = header.layer_size.0 * header.layer_size.1;
+            let planes = self.planes.iter_mut().skip(self.first[layer]);
+            planes.take(header.channels.list.len()).for_each(|plane| plane.values = vec![0.0; area]);
+        }
+        for block in std::mem::take(&mut self.blocks) {
+            let (at, size, layer) = (block.index.pixel_position, block.index.pixel_size, block.index.layer);
+            let (first, count) = (self.first[layer], headers[layer].channels.list.len());
+            let mut bytes = block.data.as_slice();
+            for y in at.1..at.1 + size.1 {
+                let row = y * self.width + at.0;
+                for plane in self.planes.iter_mut().skip(first).take(count) {
+                    let width = if plane.sample == Sample::Half { 2 } else { 4 };
+                    let line = bytes.split_at_checked(size.0 * width);
+                    let slots = plane.values.get_mut(row..row + size.0);
+                    let (Some((line, rest)), Some(slots)) = (line, slots) else {
+                        return Err(invalid("a block of the wrong size"));
+                    };
+                    fill(slots, line, plane.sample);
+                    bytes = rest;
+                }
             }
         }
-        Ok(())
+        Ok(self.planes)
     }
 }
 
@@ -203,8 +225,27 @@ fn invalid(what: &'static str) -> Error {
     Error::Invalid(what.into())
 }
 
-/// Checks the counters of a DWA block, which the crate takes at their word: a forged one makes it ask for terabytes, and
-/// that ends the process. No counter of a sound block exceeds 64 per byte (8 x 8 blocks of a picture one pixel wide).
+/// Most bytes of pixels that a byte of a block can stand for, so that no memory is asked for that the block cannot fill.
+///
+/// A match of DEFLATE has at least 2 bits and at most 258 bytes, which is 1032 to 1; PXR24 stores 3 bytes of 4 of a float. A token
+/// of RLE has 2 bytes and stands for up to 128. A run of PIZ has at least 9 bits and repeats a word of 2 bytes up to 255
+/// times. A flat block of B44A has 3 bytes in place of 32. DWA has one DC and at least one AC coefficient of 2 bytes, both packed by DEFLATE, for
+/// 64 pixels of up to 4 bytes: 66048 to 1; RLE within DEFLATE has the same.
+const fn ratio(compression: Compression) -> usize {
+    match compression {
+        Compression::Uncompressed => 1,
+        Compression::RLE => 64,
+        Compression::B44 | Compression::B44A => 11,
+        Compression::PIZ => 454,
+        Compression::ZIP1 | Compression::ZIP16 => 1032,
+        Compression::PXR24 => 1376,
+        _ => 66048,
+    }
+}
+
+/// Checks that a block can hold the pixels that it claims, and the counters of a DWA block, which the crate takes at their word: a
+/// forged one makes it ask for terabytes, and that ends the process. No counter of a sound block exceeds 64 per byte (8 x 8
+/// blocks of a picture one pixel wide).
 fn guard(header: &Header, chunk: &Chunk) -> ExrResult<()> {
     let (CompressedBlock::ScanLine(CompressedScanLineBlock { compressed_pixels_le: bytes, .. })
     | CompressedBlock::Tile(CompressedTileBlock { compressed_pixels_le: bytes, .. })) =
@@ -212,16 +253,22 @@ fn guard(header: &Header, chunk: &Chunk) -> ExrResult<()> {
     else {
         return Ok(());
     };
-    if !matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_)) {
-        return Ok(());
+    let size = header
+        .get_absolute_block_pixel_coordinates(header.get_block_data_indices(&chunk.compressed_block)?)?
+        .size;
+    let pixels = size.0.saturating_mul(size.1).saturating_mul(header.channels.bytes_per_pixel);
+    // the crate takes a DWA block without bytes for one of zeros
+    let most = bytes.len().saturating_mul(ratio(header.compression)).max(1 << 16);
+    if pixels > most {
+        return Err(invalid("a block that claims more pixels than its bytes can hold"));
     }
-    let block = header.max_block_pixel_size();
-    let pixels = block.0.min(header.layer_size.0).saturating_mul(block.1.min(header.layer_size.1));
-    let limit =
-        (pixels.saturating_mul(header.channels.bytes_per_pixel) as u64).saturating_mul(64).min(1 << 31);
-    let counters = bytes.chunks_exact(8).take(11).filter_map(|b| b.try_into().ok()).map(u64::from_le_bytes);
-    if counters.max().is_some_and(|n| n > limit) {
-        return Err(invalid("a DWA block that claims to be larger than its pixels"));
+    if matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_)) {
+        let limit = pixels.saturating_mul(64).min(most) as u64;
+        let counters =
+            bytes.chunks_exact(8).take(11).filter_map(|b| b.try_into().ok()).map(u64::from_le_bytes);
+        if counters.max().is_some_and(|n| n > limit) {
+            return Err(invalid("a DWA block that claims to be larger than its pixels"));
+        }
     }
     Ok(())
 }

@@ -56,6 +56,7 @@ pub mod diff_files;
 pub mod diff_json;
 mod error;
 pub mod exr;
+mod exr_chunks;
 mod exr_read;
 pub mod hdr;
 pub mod ktx2;

@@ -15,6 +15,9 @@ const MAX_ALLOC: u64 = 1 << 30;
 /// Longest provenance that is unpacked.
 const MAX_TEXT: usize = 1 << 24;
 
+/// Most bytes that a byte of DEFLATE stands for: a match of 258 bytes has at least 2 bits.
+const MAX_RATIO: usize = 1032;
+
 pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
     // crate png 0.18 can panic on a damaged palette; the panic is caught and told as an error
     std::panic::catch_unwind(|| decode(bytes)).unwrap_or_else(|_| {
@@ -49,6 +52,11 @@ fn pixels(bytes: &[u8]) -> Result<(usize, usize, Vec<Plane>), ReadError> {
     if samples > MAX_SAMPLES {
         return Err(ReadError::Samples { format: FORMAT, width, height });
     }
+    if width * height / 8 * stored_bits(bytes) > bytes.len().saturating_mul(MAX_RATIO) {
+        let fault =
+            format!("{} bytes cannot hold {width} x {height} pixels: the file is cut short", bytes.len());
+        return Err(ReadError::Fault { format: FORMAT, fault });
+    }
     let size = usize::from(colour.bytes_per_pixel()) / n;
     let mut data = vec![0; samples * size];
     decoder.read_image(&mut data).map_err(library)?;
@@ -66,6 +74,18 @@ fn pixels(bytes: &[u8]) -> Result<(usize, usize, Vec<Plane>), ReadError> {
         values: data.chunks_exact(size).skip(c).step_by(n).map(code).collect(),
     };
     Ok((width, height, names.iter().enumerate().map(plane).collect()))
+}
+
+/// Bits of a pixel in the file, from the first chunk, which the decoder has checked.
+fn stored_bits(bytes: &[u8]) -> usize {
+    let byte = |at: usize| usize::from(bytes.get(at).copied().unwrap_or(0));
+    let samples = match byte(25) {
+        2 => 3,
+        4 => 2,
+        6 => 4,
+        _ => 1,
+    };
+    byte(24) * samples
 }
 
 fn code(sample: &[u8]) -> f64 {

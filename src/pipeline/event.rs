@@ -1,11 +1,12 @@
 //! What a run tells while it works. One event is one line of `--message-format json`.
 
-use super::Outcome;
+use super::{Outcome, Recovery};
 use crate::grid::provenance::{ChoiceRecord, SizeRecord};
 use crate::grid::table::Extreme;
 use crate::recipe::Plan;
 use crate::verify::Finding;
 use serde::Serialize;
+use std::path::Path;
 
 /// Receives events. Implementations must not fail; a table's progress comes from several threads.
 pub trait Progress: Sync {
@@ -32,6 +33,20 @@ pub enum Event<'a> {
         recipe: &'a str,
         /// Tables in order.
         tables: Vec<PlanEntry<'a>>,
+    },
+    /// Another run holds the output folder.
+    Waiting {
+        /// The folder.
+        folder: &'a Path,
+        /// How long this run waits at most.
+        seconds: f64,
+    },
+    /// A killed run had left files in the output folder.
+    Recovered {
+        /// The folder.
+        folder: &'a Path,
+        /// What was done about them.
+        recovery: Recovery,
     },
     /// Work on a table starts.
     TableStarted {

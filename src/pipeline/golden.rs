@@ -13,6 +13,7 @@
 //! bytes, and times of nothing.
 
 use super::MANIFEST;
+use crate::encode::atomic::HIDDEN;
 use crate::encode::diff::{self, ImageDiff, Tolerance};
 use crate::encode::diff_files::{FileDiff, FolderDiff};
 use crate::encode::{Image, read};
@@ -24,7 +25,7 @@ use std::path::{Path, PathBuf};
 pub const SETTINGS: &str = "golden.toml";
 
 /// Files of the folder that are not outputs.
-const OWN: [&str; 5] = [SETTINGS, MANIFEST, "recipe.toml", "README.md", "command.txt"];
+pub(super) const OWN: [&str; 5] = [SETTINGS, MANIFEST, "recipe.toml", "README.md", "command.txt"];
 
 /// Settings of a golden folder.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -160,7 +161,8 @@ fn names(folder: &Path) -> Result<BTreeSet<String>, GoldenError> {
     for entry in std::fs::read_dir(folder).map_err(io)? {
         let entry = entry.map_err(io)?;
         let name = entry.file_name().to_string_lossy().into_owned();
-        if entry.path().is_file() && !OWN.contains(&name.as_str()) {
+        // what a killed run left is no output
+        if entry.path().is_file() && !OWN.contains(&name.as_str()) && !name.starts_with(HIDDEN) {
             names.insert(name);
         }
     }

@@ -75,11 +75,11 @@ impl Manifest {
     }
 
     /// Sizes and hashes of the files as they are written: one may hold several tables.
-    pub(super) fn set_sizes(&mut self, files: &[(String, Vec<u8>)]) {
+    pub(super) fn set_sizes<'a>(&mut self, staged: impl Fn(&str) -> Option<(u64, &'a str)>) {
         for record in self.tables.iter_mut().flat_map(|t| &mut t.files) {
-            if let Some((_, bytes)) = files.iter().find(|(name, _)| *name == record.file) {
-                record.bytes = bytes.len() as u64;
-                record.blake3 = blake3::hash(bytes).to_hex().to_string();
+            if let Some((bytes, blake3)) = staged(&record.file) {
+                record.bytes = bytes;
+                blake3.clone_into(&mut record.blake3);
             }
         }
     }

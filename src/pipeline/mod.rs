@@ -1,37 +1,56 @@
-//! Plan -> bake -> verify -> encode -> write. Nothing is written unless every table of the plan is baked and verified.
+//! Plan -> bake -> verify -> encode -> write. Nothing is replaced unless every table of the plan is baked and verified; what that
+//! promises of an output folder is told in [`transaction`].
 //!
 //! The pipeline never prints: it sends [`Event`]s to a [`Progress`].
 
+pub mod audit;
 mod event;
 mod fit;
+mod gather;
 pub mod golden;
 mod manifest;
 mod size;
 pub mod suggest;
 mod table;
 mod texels;
+mod threads;
+pub mod transaction;
 
 pub use event::{Event, Extremum, Progress, Silent};
 pub use manifest::{FileRecord, MANIFEST, Manifest, TableRecord};
+pub use threads::{MOST_THREADS, pool};
+pub use transaction::Recovery;
 
 use crate::cancel::{Cancel, Cancelled};
-use crate::encode::atomic::{self, WriteError};
 use crate::encode::{self, EncodeError, RangeFault};
 use crate::recipe::{Plan, PlannedTable};
 use crate::tables::driver::BakeError;
 use crate::verify::Finding;
 use std::path::PathBuf;
-use std::time::Instant;
-use table::Made;
+use std::time::{Duration, Instant};
+use transaction::{Transaction, TransactionError, Waiting};
 
-/// Where to write and how many threads to use.
+/// Where to write and what to use for it.
 #[derive(Debug, Clone)]
 pub struct Settings {
     /// Output folder.
     pub out: PathBuf,
-    /// Threads; the number of cores if none.
+    /// Threads, at most [`MOST_THREADS`]; the number of cores if none.
     pub jobs: Option<usize>,
+    /// How long to wait for another run that writes into the folder.
+    pub lock_timeout: Duration,
 }
+
+impl Settings {
+    /// Settings for a folder, with the defaults of the command: every core, [`LOCK_TIMEOUT`].
+    #[must_use]
+    pub fn new(out: impl Into<PathBuf>) -> Settings {
+        Settings { out: out.into(), jobs: None, lock_timeout: LOCK_TIMEOUT }
+    }
+}
+
+/// How long a run waits for another one that writes into its folder, if nothing else is said.
+pub const LOCK_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Why nothing was written.
 #[derive(Debug, thiserror::Error)]
@@ -110,11 +129,23 @@ pub enum PipelineError {
     /// Stopped from outside.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// Files could not be written.
+    /// The output folder, or a file in it, cannot be written.
     #[error(transparent)]
-    Write(#[from] WriteError),
+    Files(#[from] TransactionError),
+    /// More threads were asked for than are allowed.
+    #[error("{from} = {jobs}: at most {limit} threads are allowed")]
+    Jobs {
+        /// Who asked: `jobs`, or a variable of the environment.
+        from: &'static str,
+        /// How many.
+        jobs: usize,
+        /// Most that are allowed.
+        limit: usize,
+    },
     /// The threads could not be started.
-    #[error("cannot start {jobs} threads: {message}")]
+    #[error(
+        "cannot start {jobs} threads: {message}; take fewer, or allow the process more threads and memory"
+    )]
     Threads {
         /// How many.
         jobs: usize,
@@ -149,7 +180,7 @@ pub struct Outcome {
 /// Runs a plan. `cancel` is looked at between texels and before files are moved to their names.
 ///
 /// # Errors
-/// [`PipelineError`]; in every case but a failed rename the output folder is as it was.
+/// [`PipelineError`]; in every case but [`TransactionError::Stuck`] the output folder is as it was.
 pub fn run(
     plan: &Plan,
     settings: &Settings,
@@ -157,18 +188,20 @@ pub fn run(
     progress: &dyn Progress,
 ) -> Result<Outcome, PipelineError> {
     let start = Instant::now();
-    atomic::check_writable(&settings.out)?;
-    let jobs = settings.jobs.unwrap_or(0);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(jobs)
-        .build()
-        .map_err(|e| PipelineError::Threads { jobs, message: e.to_string() })?;
+    check(plan, settings)?;
+    let pool = pool(settings.jobs)?;
     progress.event(&Event::plan(plan));
-    let mut made = Vec::new();
+    let mut files = begin(plan, settings, cancel, progress)?;
+    let mut gathered = gather::Gathered::new(plan);
+    let mut tables = Vec::new();
     let mut findings = Vec::new();
     for (index, planned) in plan.tables.iter().enumerate() {
         match pool.install(|| table::make(plan, planned, index, cancel, progress)) {
-            Ok(table) => made.push(table),
+            Ok(made) if findings.is_empty() => {
+                gathered.take(index, made.files, &mut files)?;
+                tables.push(made.record);
+            }
+            Ok(_) => {}
             // the other tables are still checked, so that one run shows every broken law
             Err(PipelineError::Laws(broken)) => findings.extend(broken),
             Err(e) => return Err(e),
@@ -177,45 +210,38 @@ pub fn run(
     if !findings.is_empty() {
         return Err(PipelineError::Laws(findings));
     }
-    let files = join(plan, &mut made)?;
-    let mut manifest = Manifest::new(plan, made.into_iter().map(|m| m.record).collect());
-    manifest.set_sizes(&files);
-    let mut files: Vec<(PathBuf, Vec<u8>)> =
-        files.into_iter().map(|(name, bytes)| (settings.out.join(name), bytes)).collect();
-    files.push((settings.out.join(MANIFEST), manifest.to_bytes()));
-    let written = atomic::write_all(&files, cancel)?;
+    let mut manifest = Manifest::new(plan, tables);
+    manifest.set_sizes(|name| files.staged(name));
+    let written = files.commit(&manifest.to_bytes())?;
     let outcome = Outcome { manifest, written: written.written, unchanged: written.unchanged };
     progress.event(&Event::summary(&outcome, start.elapsed().as_secs_f64()));
     Ok(outcome)
 }
 
-/// The files of all tables; those of tables that name the same one are joined, in the order of the tables.
-fn join(plan: &Plan, made: &mut [Made]) -> Result<Vec<(String, Vec<u8>)>, PipelineError> {
-    let mut files: Vec<(String, usize, Vec<Vec<u8>>)> = Vec::new();
-    for (i, made) in made.iter_mut().enumerate() {
-        for (name, bytes) in std::mem::take(&mut made.files) {
-            match files.iter_mut().find(|(other, ..)| *other == name) {
-                Some((_, _, parts)) => parts.push(bytes),
-                None => files.push((name, i, vec![bytes])),
-            }
-        }
+/// What would stop a run before it begins, without a trace: conflicts of file names.
+///
+/// # Errors
+/// [`PipelineError::Files`].
+pub fn check(plan: &Plan, settings: &Settings) -> Result<(), PipelineError> {
+    transaction::check(&settings.out, &outputs(plan))?;
+    Ok(())
+}
+
+/// Locks the output folder.
+fn begin<'a>(
+    plan: &Plan,
+    settings: &Settings,
+    cancel: &'a Cancel,
+    progress: &dyn Progress,
+) -> Result<Transaction<'a>, PipelineError> {
+    let (folder, timeout) = (settings.out.as_path(), settings.lock_timeout);
+    let told = || progress.event(&Event::Waiting { folder, seconds: timeout.as_secs_f64() });
+    let waiting = Waiting { timeout, told: &told };
+    let (files, recovered) = Transaction::begin(folder, &outputs(plan), cancel, &waiting)?;
+    if let Some(recovery) = recovered {
+        progress.event(&Event::Recovered { folder, recovery });
     }
-    let one = |(name, table, mut parts): (String, usize, Vec<Vec<u8>>)| {
-        if parts.len() == 1 {
-            return Ok((name, parts.swap_remove(0)));
-        }
-        let output = plan.tables.get(table).and_then(|t| t.outputs.first());
-        let joined = match output.and_then(|o| encode::encoder(&o.container)) {
-            Some(encoder) => encoder.join(&parts),
-            None => Ok(parts.concat()),
-        };
-        joined.map(|bytes| (name.clone(), bytes)).map_err(|error| PipelineError::Encode {
-            table: plan.tables.get(table).map_or_else(String::new, |t| t.name.clone()),
-            output: name,
-            error,
-        })
-    };
-    files.into_iter().map(one).collect()
+    Ok(files)
 }
 
 /// Names of every file that a plan writes, in order, relative to the output folder.

@@ -71,7 +71,8 @@ fn tables_in_one_exr_are_its_parts() {
     let bytes = std::fs::read(&files[0]).unwrap();
     // the same bytes again, with another number of threads
     let again = tempfile::tempdir().unwrap();
-    let settings = brdfbake::pipeline::Settings { out: again.path().to_owned(), jobs: Some(1) };
+    let settings =
+        brdfbake::pipeline::Settings { jobs: Some(1), ..brdfbake::pipeline::Settings::new(again.path()) };
     let cancel = brdfbake::cancel::Cancel::new();
     brdfbake::pipeline::run(&plan, &settings, &cancel, &brdfbake::pipeline::Silent).unwrap();
     assert_eq!(bytes, std::fs::read(again.path().join("set.exr")).unwrap());

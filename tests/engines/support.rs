@@ -61,7 +61,7 @@ pub(crate) fn exact(mut plan: Plan) -> Plan {
 
 /// Bakes a plan into a folder and returns the paths of its files, one a table.
 pub(crate) fn bake(plan: &Plan, out: &Path) -> Vec<PathBuf> {
-    let settings = Settings { out: out.to_owned(), jobs: Some(2) };
+    let settings = Settings { jobs: Some(2), ..Settings::new(out) };
     let outcome = pipeline::run(plan, &settings, &Cancel::new(), &Silent).unwrap();
     outcome.manifest.tables.iter().map(|t| out.join(&t.files[0].file)).collect()
 }

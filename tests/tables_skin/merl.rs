@@ -115,7 +115,7 @@ fn file(model: &str, params: &str) -> Vec<u8> {
     };
     let plan = Plan::from_requests("merl", vec![table]).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let settings = Settings { out: folder.path().to_owned(), jobs: Some(2) };
+    let settings = Settings { jobs: Some(2), ..Settings::new(folder.path()) };
     pipeline::run(&plan, &settings, &Cancel::new(), &Silent).unwrap();
     std::fs::read(folder.path().join("measured.binary")).unwrap()
 }

@@ -1,0 +1,35 @@
+//! What a run may use: threads and time. The same options for every verb that bakes.
+
+use crate::pipeline::Settings;
+use std::path::Path;
+use std::time::Duration;
+
+/// Options of every verb that bakes.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Limits {
+    /// Number of threads; all cores if not given. The bytes do not depend on it.
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// How long to wait for another run that writes into the output folder.
+    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = seconds)]
+    lock_timeout: Duration,
+}
+
+impl Limits {
+    /// Number of threads, if it is given.
+    #[must_use]
+    pub fn jobs(&self) -> Option<usize> {
+        self.jobs.map(usize::from)
+    }
+
+    /// Settings of a run into a folder.
+    #[must_use]
+    pub fn settings(&self, out: &Path) -> Settings {
+        Settings { jobs: self.jobs(), lock_timeout: self.lock_timeout, ..Settings::new(out) }
+    }
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let number: f64 = text.parse().map_err(|_| "it is no number of seconds".to_owned())?;
+    Duration::try_from_secs_f64(number).map_err(|e| e.to_string())
+}

@@ -1,0 +1,68 @@
+//! Whether files of these names can be written into a folder, found before anything is baked.
+
+use super::TransactionError;
+use super::error::folder as cannot;
+use std::collections::HashMap;
+use std::fs::{self, Metadata};
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// Checks the names of outputs among each other, and what has these names in the folder now. The folder need not exist.
+///
+/// # Errors
+/// [`TransactionError::Twice`], [`TransactionError::InTheWay`] and [`TransactionError::Folder`].
+pub fn check(folder: &Path, names: &[String]) -> Result<(), TransactionError> {
+    let mut taken = HashMap::new();
+    for name in names {
+        if let Some(other) = taken.insert(name.to_ascii_lowercase(), name) {
+            return Err(TransactionError::Twice { name: other.clone(), other: name.clone() });
+        }
+    }
+    check_folder(folder)?;
+    for name in names {
+        let path = folder.join(name);
+        let found = match fs::symlink_metadata(&path) {
+            Err(e) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&e.kind()) => continue,
+            Err(source) => return Err(cannot(folder, source)),
+            Ok(found) => found,
+        };
+        let what = if found.is_symlink() {
+            match fs::metadata(&path) {
+                // the link is replaced, what it leads to is left alone
+                Ok(end) if end.is_file() => continue,
+                Ok(end) if end.is_dir() => "a link to a folder",
+                Ok(_) => "a link to what is no file",
+                Err(_) => "a link that leads nowhere",
+            }
+        } else if let Some(what) = not_a_file(&found) {
+            what
+        } else {
+            continue;
+        };
+        return Err(TransactionError::InTheWay { path, what });
+    }
+    Ok(())
+}
+
+fn not_a_file(found: &Metadata) -> Option<&'static str> {
+    match () {
+        () if found.is_file() => None,
+        () if found.is_dir() => Some("a folder"),
+        () => Some("a device, pipe or socket"),
+    }
+}
+
+/// The folder, or the nearest of those above it that exists, must be one.
+fn check_folder(folder: &Path) -> Result<(), TransactionError> {
+    for path in folder.ancestors().filter(|p| !p.as_os_str().is_empty()) {
+        let what = match (fs::symlink_metadata(path), fs::metadata(path)) {
+            (_, Ok(found)) if found.is_dir() => return Ok(()),
+            (_, Ok(_)) => "a file",
+            (Ok(_), Err(_)) => "a link that leads nowhere",
+            (Err(e), _) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&e.kind()) => continue,
+            (Err(source), _) => return Err(cannot(folder, source)),
+        };
+        return Err(TransactionError::InTheWay { path: path.to_owned(), what });
+    }
+    Ok(())
+}
