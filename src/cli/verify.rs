@@ -34,8 +34,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     } else if !args.quiet {
         output::data(&text(&args.folder.display().to_string(), &audit));
     }
-    let clean = verdict == Verdict::Whole && !(args.strict && !audit.foreign.is_empty());
-    Ok(if clean { Exit::Done } else { Exit::Failed })
+    let foreign = args.strict && !audit.foreign.is_empty();
+    Ok(if verdict != Verdict::Whole || foreign { Exit::Failed } else { Exit::Done })
 }
 
 fn text(folder: &str, audit: &Audit) -> String {
