@@ -15,8 +15,8 @@
 //!
 //! Source: [Genz and Malik 1980](crate::cite::GENZ_MALIK_1980); the subdivision is that of `DCUHRE`.
 
-use super::ladder::{Estimate, MAX_CHANNELS, ROUNDING, Sums};
 use super::nodes::Nodes;
+use super::stop::{Estimate, MAX_CHANNELS, ROUNDING, Sums};
 use super::view::View;
 use glam::DVec3;
 use std::cmp::Ordering;

@@ -1,7 +1,7 @@
 //! The chart of broad lobes with hard corners: cloth, whose fitted masking has powers like `mu^0.17` at the horizon and
 //! at the normal, and a joint at `mu_i = 1/2`.
 //!
-//! Polar round the normal in `wi`. The cosine runs over panels between 0, 1/2, `mu_o` and 1, each under
+//! Polar round the normal in `wi`. The cosine runs over panels between 0, a floor, 1/2, `mu_o` and 1, each under
 //! `s = 1 / (1 + exp(-pi sinh t))` (Takahasi and Mori's double exponential), which integrates any power at the ends of a
 //! panel as if it were smooth. The azimuth is graded towards the far side, where the half vector of two grazing
 //! directions swings up to the normal within an angle of `mu_o`.
@@ -16,14 +16,12 @@ const AZIMUTH: Order = Order(1.0, 0.4);
 const END: f64 = 3.2;
 
 /// Calls `visit` with batches of nodes that cover the hemisphere for one view cosine.
-pub fn visit(mu_o: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
+pub fn visit(mu_o: f64, floor: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
     let mut nodes = Nodes::new(mu_o.into());
     let scale = (mu_o / (nodes.sin_o.max(1e-9) * PI)).clamp(1e-9, 1e3);
     let azimuth = Graded::new(scale, AZIMUTH, level);
-    let mut ends = [0.0, mu_o.min(0.5), mu_o.max(0.5), 1.0];
-    if mu_o <= 0.0 {
-        ends[1] = 0.0;
-    }
+    let mut ends = [0.0, floor, mu_o.max(0.0), 0.5, 1.0];
+    ends.sort_by(f64::total_cmp);
     for (panel, pair) in ends.windows(2).enumerate() {
         let (lo, hi) = (pair[0], pair[1]);
         if hi - lo <= 0.0 {

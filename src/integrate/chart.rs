@@ -1,8 +1,10 @@
 //! The charts that a model can declare.
 
-use super::ellipse::{self, Edge};
+use super::crease::Crease;
+use super::ellipse::{self, Edge, FacetLobe};
 use super::hemisphere::{self, Folds};
 use super::nodes::Nodes;
+use super::stop::Trust;
 use super::view::View;
 use super::{broad, fibre, half_vector, lobe};
 
@@ -20,15 +22,8 @@ pub enum Chart {
         /// difference of two levels says less.
         kinks: bool,
     },
-    /// The same for two widths, or for lobes with other edges than masking has; see [`ellipse`].
-    Ellipse {
-        /// Widths of the peak of D along the tangents.
-        alpha: [f64; 2],
-        /// As in [`Chart::HalfVector`], in units of the width along each azimuth.
-        reach: f64,
-        /// What the lobe does at the horizon.
-        edge: Edge,
-    },
+    /// The same for two widths, for lobes with other edges than masking has, and where F is not smooth; see [`ellipse`].
+    Ellipse(FacetLobe),
     /// Polar round the axis `C wo` of a lobe `max(0, wi . C wo)^exponent`; see [`lobe`].
     Lobe {
         /// Diagonal of C.
@@ -49,6 +44,8 @@ pub enum Chart {
     Broad {
         /// As in [`Chart::HalfVector`].
         kinks: bool,
+        /// Cosines below this count as this: another kink; 0 for none.
+        floor: f64,
     },
     /// The same with panels that end at `mu_i = mu_o` and at azimuth pi/2 from wo.
     Folded,
@@ -60,41 +57,59 @@ pub enum Chart {
 const HORIZON_SCALE: f64 = 1e-9;
 
 impl Chart {
+    /// The half-vector chart that facets need: the simple one where it is enough.
+    #[must_use]
+    pub fn facets(facets: FacetLobe) -> Chart {
+        let FacetLobe { alpha: [x, y], reach, edge, layer, fold, crease } = facets;
+        let smith = (layer - 3.0 * x).abs() <= 0.0;
+        if (x - y).abs() <= 0.0 && smith && edge == Edge::Layer && !fold && crease.is_none() {
+            return Chart::HalfVector { alpha: x, reach, kinks: false };
+        }
+        Chart::Ellipse(facets)
+    }
+
+    /// The chart for the lobe times a factor of `wo . wm` with a crease; the chart itself where it does not know the facets.
+    #[must_use]
+    pub fn creased(self, crease: Option<Crease>) -> Chart {
+        match self {
+            Chart::HalfVector { alpha, reach, .. } if crease.is_some() => {
+                Chart::Ellipse(FacetLobe { crease, ..FacetLobe::smith([alpha; 2], reach) })
+            }
+            Chart::Ellipse(facets) => {
+                Chart::Ellipse(FacetLobe { crease: crease.or(facets.crease), ..facets })
+            }
+            other => other,
+        }
+    }
+
     /// Calls `visit` with batches of nodes at a refinement level (2 is coarse, 16 is full f64 accuracy).
     pub fn visit(&self, view: View, level: f64, visit: &mut dyn FnMut(&Nodes)) {
         match *self {
             Chart::HalfVector { alpha, reach, .. } => half_vector::visit(view.mu, alpha, reach, level, visit),
-            Chart::Ellipse { alpha, reach, edge } => ellipse::visit(view, alpha, reach, edge, level, visit),
+            Chart::Ellipse(facets) => ellipse::visit(view, &facets, level, visit),
             Chart::Lobe { c, exponent } => lobe::visit(view, c, exponent, level, visit),
             Chart::Fibre { across, cone } => fibre::visit(view, across, cone, level, visit),
             Chart::Hemisphere => hemisphere::visit(view, Folds::None, level, visit),
             Chart::Folded => hemisphere::visit(view, Folds::Cross, level, visit),
             Chart::Horizon => hemisphere::visit(view, Folds::Horizon(HORIZON_SCALE), level, visit),
-            Chart::Broad { .. } => broad::visit(view.mu, level, visit),
+            Chart::Broad { floor, .. } => broad::visit(view.mu, floor, level, visit),
         }
     }
 
-    /// How much smaller than the difference of two successive levels the error of the finer one is taken to be, for
-    /// the step to ladder level `j`; the last entry of a table holds for all later steps.
-    ///
-    /// Measured: the isotropic half-vector chart over 6000 pairs of mu and alpha in [1e-5, 1], the others over 3000
-    /// draws of each model that uses them (`cargo long`, `tests/quadrature_charts.rs`). With these gains the error is
-    /// below its estimate for 99.9 % of GGX and 99 % of all others at every level; diffuse charts converge so fast that
-    /// a larger gain would save nothing. A Gaussian peak converges later and then faster than a power law, so its
-    /// first levels get a gain below 1.
+    /// How far the differences of its levels are to be trusted; see [`Trust`].
     #[must_use]
-    pub fn gain(&self, j: usize) -> f64 {
-        let table: &[f64] = match self {
-            Chart::HalfVector { kinks: true, .. } | Chart::Broad { kinks: true } => &[0.2],
-            Chart::HalfVector { reach, .. } if reach.is_finite() => &[0.3, 0.3, 0.3, 2.0],
-            Chart::HalfVector { .. } => &[0.3, 0.8, 0.9, 2.0],
-            Chart::Ellipse { reach, .. } if reach.is_finite() => &[1.0, 0.5, 0.6, 3.0, 1.2],
-            Chart::Ellipse { .. } => &[2.0, 1.2, 0.8, 0.7, 0.5],
-            Chart::Lobe { .. } => &[0.2, 0.3, 1.0, 4.0],
-            Chart::Fibre { .. } => &[0.4, 1.0],
-            Chart::Hemisphere | Chart::Folded | Chart::Horizon | Chart::Broad { .. } => &[1.0],
+    pub fn trust(&self) -> Trust {
+        let (gain, memory): (&[f64], f64) = match self {
+            Chart::Ellipse(facets) => return facets.trust(),
+            Chart::HalfVector { kinks: true, .. } | Chart::Broad { kinks: true, .. } => (&[0.2], 0.2),
+            Chart::HalfVector { reach, .. } if reach.is_finite() => (&[0.6, 0.6, 2.0, 2.5], 0.1),
+            Chart::HalfVector { .. } => (&[2.0, 2.0, 4.0, 6.0], 0.05),
+            Chart::Lobe { .. } => (&[0.9, 0.9, 3.0, 6.0], 0.1),
+            Chart::Fibre { .. } => (&[0.7], 0.05),
+            Chart::Broad { .. } => (&[1.2, 1.2, 1.5, 1.2, 0.6, 0.8], 0.05),
+            Chart::Hemisphere | Chart::Folded | Chart::Horizon => (&[1.0], 0.1),
         };
-        table[j.clamp(1, table.len()) - 1]
+        Trust { gain, memory }
     }
 
     /// The rule in words, for metadata.
@@ -102,25 +117,25 @@ impl Chart {
     pub fn name(&self) -> &'static str {
         match self {
             Chart::HalfVector { .. } => {
-                "product Gauss-Legendre, graded half-vector chart, level raised until two levels agree"
+                "product Gauss-Legendre, graded half-vector chart, level raised until three levels agree"
             }
-            Chart::Ellipse { .. } => {
-                "product Gauss-Legendre, elliptical half-vector chart, level raised until two levels agree"
+            Chart::Ellipse(_) => {
+                "product Gauss-Legendre, elliptical half-vector chart, level raised until three levels agree"
             }
             Chart::Lobe { .. } => {
-                "product Gauss-Legendre, polar chart round the lobe, level raised until two levels agree"
+                "product Gauss-Legendre, polar chart round the lobe, level raised until three levels agree"
             }
             Chart::Fibre { .. } => {
-                "product Gauss-Legendre, polar chart round the tangent, level raised until two levels agree"
+                "product Gauss-Legendre, polar chart round the tangent, level raised until three levels agree"
             }
             Chart::Hemisphere => {
-                "Gauss-Legendre by midpoints, polar chart, level raised until two levels agree"
+                "Gauss-Legendre by midpoints, polar chart, level raised until three levels agree"
             }
             Chart::Folded | Chart::Horizon => {
-                "product Gauss-Legendre, polar chart, level raised until two levels agree"
+                "product Gauss-Legendre, polar chart, level raised until three levels agree"
             }
             Chart::Broad { .. } => {
-                "double exponential by Gauss-Legendre, polar chart, level raised until two levels agree"
+                "double exponential by Gauss-Legendre, polar chart, level raised until three levels agree"
             }
         }
     }

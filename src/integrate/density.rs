@@ -4,7 +4,11 @@
 //! last two coefficients tell how much the series leaves out. The panel that leaves out most is halved.
 
 use super::gauss;
+use super::stop::Trust;
 use crate::math::root::solve;
+
+/// Trust in what the last two coefficients say of those left out: one may vanish by symmetry, so both count alike.
+const TRUST: Trust = Trust { gain: &[2.0], memory: 1.0 };
 
 /// Coefficients of a panel.
 const ORDER: usize = 12;
@@ -133,8 +137,8 @@ impl Panel {
                 (p, next) = (next, ((2.0 * k + 3.0) * (2.0 * x - 1.0) * next - (k + 1.0) * p) / (k + 2.0));
             }
         }
-        let tail = coefficients[ORDER - 1].abs() + coefficients[ORDER - 2].abs();
-        let error = length * (0.25 * tail + uncertain);
+        let tail = TRUST.error(1, coefficients[ORDER - 2].abs(), coefficients[ORDER - 1].abs());
+        let error = length * (tail + uncertain);
         (Panel { from, length, coefficients, error, before: [0.0; 2] }, evaluations)
     }
 

@@ -21,14 +21,15 @@
 //! where masking turns within the width of the narrow one: 1e-9 takes 20 000 evaluations there, and 4 % of the draws
 //! miss it.
 
+use super::crease::{self, Crease};
 use super::graded::{Graded, Order, share_scales};
 use super::half_vector::{Row, fill, half_tangent};
 use super::nodes::Nodes;
+use super::stop::Trust;
 use super::view::View;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const AZIMUTH: Order = Order(1.4, 0.25);
-const PEAK: Order = Order(1.0, 0.35);
 const HORIZON: Order = Order(1.0, 0.25);
 const PLAIN: Order = Order(1.5, 0.0);
 
@@ -37,6 +38,9 @@ const ALPHA_RANGE: [f64; 2] = [1e-8, 4.0];
 
 /// Ratios of the widths above this need no panel end at the narrow axis.
 const ROUND: f64 = 0.8;
+
+/// Views below this see no light in the far half of the azimuth, where the squares of their cosines underflow.
+pub(super) const GRAZING: f64 = 1e-100;
 
 /// A narrow axis nearer than this to the line across wo shares its panel end.
 const CLOSE: f64 = 1e-6;
@@ -52,8 +56,6 @@ pub enum Edge {
     Graze,
     /// It goes as the square root of `mu_i`.
     Root,
-    /// It is smooth at the horizon, but has a kink where `mu_i = mu_o`.
-    Fold,
 }
 
 /// A panel of the azimuth: the psi that it is graded towards, the signed length, and the scale of the grading.
@@ -66,12 +68,11 @@ struct Panel {
 
 /// Calls `visit` with batches of nodes that cover the hemisphere for one view.
 ///
-/// `reach`: D vanishes beyond `tan(t) = reach * width`, whatever the azimuth.
-pub fn visit(view: View, alpha: [f64; 2], reach: f64, edge: Edge, level: f64, visit: &mut dyn FnMut(&Nodes)) {
-    let alpha = alpha.map(|a| a.clamp(ALPHA_RANGE[0], ALPHA_RANGE[1]));
+pub fn visit(view: View, lobe: &FacetLobe, level: f64, visit: &mut dyn FnMut(&Nodes)) {
+    let alpha = lobe.alpha.map(|a| a.clamp(ALPHA_RANGE[0], ALPHA_RANGE[1]));
     let isotropic = (alpha[0] - alpha[1]).abs() <= 0.0;
     let view = if isotropic { view.in_plane() } else { view };
-    let chart = Ellipse::new(view, alpha, reach, edge, level);
+    let chart = Ellipse::new(view, FacetLobe { alpha, ..*lobe }, level);
     let mut nodes = Nodes::new(view);
     let mirrored = (nodes.azimuth_o[0] * nodes.azimuth_o[1]).abs() < 1e-15;
     for (i, panel) in chart.panels().into_iter().enumerate() {
@@ -81,18 +82,70 @@ pub fn visit(view: View, alpha: [f64; 2], reach: f64, edge: Edge, level: f64, vi
             continue;
         }
         // at mu = 0 the far half of the azimuth sees no light
-        if middle > PI && view.mu <= 0.0 {
+        if middle > PI && view.mu < GRAZING {
             continue;
         }
         chart.panel(panel, if mirrored { 2.0 } else { 1.0 }, 2 * i, &mut nodes, visit);
     }
 }
 
+/// What the chart knows of a lobe.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FacetLobe {
+    /// Widths of the peak of D along the tangents.
+    pub alpha: [f64; 2],
+    /// D vanishes beyond `tan(t) = reach * width`, whatever the azimuth.
+    pub reach: f64,
+    /// What the lobe does at the horizon.
+    pub edge: Edge,
+    /// Width of the layer at the horizon in `mu_i`, for [`Edge::Layer`].
+    pub layer: f64,
+    /// True if it has a kink where `mu_i = mu_o`.
+    pub fold: bool,
+    /// Where its Fresnel factor is not smooth.
+    pub crease: Option<Crease>,
+}
+
+impl FacetLobe {
+    /// Facets with Smith's masking, smooth but for the horizon.
+    #[must_use]
+    pub fn smith(alpha: [f64; 2], reach: f64) -> FacetLobe {
+        let layer = 3.0 * alpha[0].min(alpha[1]);
+        FacetLobe { alpha, reach, edge: Edge::Layer, layer, fold: false, crease: None }
+    }
+
+    /// How far the differences of levels are to be trusted.
+    ///
+    /// A peak that falls like a Gaussian is seen late and then at once, hence the memory; a crease or a fold converges slowly.
+    #[must_use]
+    pub fn trust(&self) -> Trust {
+        let upright = self.alpha[0] >= 1.0 && self.layer < 3.0 * self.alpha[0].min(self.alpha[1]);
+        let (gain, memory): (&[f64], f64) = match self.edge {
+            _ if self.fold => (&[0.6], 0.05),
+            _ if upright => (&[0.5, 0.5, 0.6, 0.7], 0.1),
+            Edge::Root => (&[0.6, 0.6, 2.0, 3.0], 0.1),
+            Edge::Smooth => (&[0.8, 0.8, 4.0, 6.0], 0.1),
+            Edge::Graze => (&[1.2, 1.2, 3.0, 5.0, 3.0, 0.8], 0.05),
+            Edge::Layer => match (self.reach.is_finite(), self.crease.is_some()) {
+                (true, false) => (&[0.6, 0.6, 2.0, 3.0, 1.2], 0.1),
+                (true, true) => (&[0.6, 0.6, 1.2, 0.6], 0.1),
+                (false, false) => (&[0.6, 0.6, 0.5, 0.6], 0.03),
+                (false, true) => (&[1.0, 1.0, 0.4, 0.6, 0.5], 0.05),
+            },
+        };
+        Trust { gain, memory }
+    }
+
+    /// Facets on edge: D lies within `width` of the horizon.
+    #[must_use]
+    pub fn upright(width: f64) -> FacetLobe {
+        FacetLobe { layer: width, ..FacetLobe::smith([1.0; 2], f64::INFINITY) }
+    }
+}
+
 struct Ellipse {
     view: View,
-    alpha: [f64; 2],
-    reach: f64,
-    edge: Edge,
+    lobe: FacetLobe,
     level: f64,
     /// psi across wo, and the width there.
     psi_1: f64,
@@ -100,22 +153,50 @@ struct Ellipse {
 }
 
 impl Ellipse {
-    fn new(view: View, alpha: [f64; 2], reach: f64, edge: Edge, level: f64) -> Ellipse {
+    fn new(view: View, lobe: FacetLobe, level: f64) -> Ellipse {
+        let alpha = lobe.alpha;
         let [cos, sin] = view.azimuth();
         // phi_1 = phi_o - pi/2 has the direction (sin, -cos)
         let psi_1 = libm::atan2(-cos * alpha[0], sin * alpha[1]);
         let width_1 = 1.0 / (square(sin / alpha[0]) + square(cos / alpha[1])).sqrt();
-        Ellipse { view, alpha, reach, edge, level, psi_1, width_1 }
+        Ellipse { view, lobe, level, psi_1, width_1 }
+    }
+
+    /// Ends of panels where a crease begins to be met: psi - psi_1, each with its scale.
+    fn crease_ends(&self, crease: Crease) -> Vec<(f64, f64)> {
+        let [ax, ay] = self.lobe.alpha;
+        let [cos_o, sin_o] = self.view.azimuth();
+        let phi_o = libm::atan2(sin_o, cos_o);
+        let scale = if crease.at < 1.0 { 1e3 } else { 1e-4 };
+        let mut ends = Vec::new();
+        for from_view in crease.azimuths(self.view.mu, self.view.sine()) {
+            for sign in [1.0, -1.0] {
+                let (sin, cos) = libm::sincos(phi_o + sign * from_view);
+                let psi = libm::atan2(sin / ay, cos / ax);
+                let at = (psi - self.psi_1).rem_euclid(2.0 * PI);
+                if at.is_finite() {
+                    ends.push((at, scale));
+                }
+            }
+        }
+        ends
     }
 
     /// Panels of psi - psi_1 in (0, 2 pi): wm is across wo at 0 and pi, and along the narrow axis at two more angles.
     fn panels(&self) -> Vec<Panel> {
-        let [ax, ay] = self.alpha;
+        let [ax, ay] = self.lobe.alpha;
         // mu / s in phi, stretched to psi; a fold passes through the peak where it is across wo, in a layer as much
         // narrower as the peak is narrow
         let stretch = self.width_1 * self.width_1 / (ax * ay);
-        let layer = if self.edge == Edge::Fold { (2.0 * self.width_1).min(1.0) } else { 1.0 };
-        let across = (self.view.mu / self.view.sine().max(1e-9) * stretch * layer).clamp(1e-9, 1e3);
+        let layer = if self.lobe.fold { (2.0 * self.width_1).min(1.0) } else { 1.0 };
+        let sine = self.view.sine().max(1e-9);
+        let mut across = self.view.mu / sine * stretch * layer;
+        if let Some(crease) = self.lobe.crease {
+            // a crease near the peak crosses it within an angle of its distance over the width
+            let near = (crease.at - self.view.mu).abs().max(crease.width);
+            across = across.min(near / (sine * self.width_1) * stretch);
+        }
+        let across = across.clamp(1e-9, 1e3);
         let mut ends = vec![(0.0, across), (PI, across), (2.0 * PI, across)];
         let ratio = ax.min(ay) / ax.max(ay);
         if ratio < ROUND {
@@ -128,6 +209,16 @@ impl Ellipse {
                 ends.sort_by(|a, b| a.0.total_cmp(&b.0));
                 share_scales(&mut ends);
             }
+        }
+        if let Some(crease) = self.lobe.crease {
+            let apart = |ends: &[(f64, f64)], at: f64| ends.iter().all(|e| (e.0 - at).abs() > CLOSE);
+            for end in self.crease_ends(crease) {
+                if apart(&ends, end.0) {
+                    ends.push(end);
+                }
+            }
+            ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+            share_scales(&mut ends);
         }
         let halves = ends.windows(2).flat_map(|pair| {
             let half = 0.5 * (pair[1].0 - pair[0].0);
@@ -144,7 +235,7 @@ impl Ellipse {
         nodes: &mut Nodes,
         visit: &mut dyn FnMut(&Nodes),
     ) {
-        let [ax, ay] = self.alpha;
+        let [ax, ay] = self.lobe.alpha;
         let (s, mu) = (nodes.sin_o, nodes.mu_o);
         let length = panel.length.abs();
         let azimuth = Graded::new(panel.scale / length, AZIMUTH, self.level);
@@ -171,45 +262,57 @@ impl Ellipse {
         nodes: &mut Nodes,
         visit: &mut dyn FnMut(&Nodes),
     ) {
-        let end = half_tangent(self.reach * width);
+        let lobe = &self.lobe;
+        let end = half_tangent(lobe.reach * width);
+        let mut cuts: Vec<(f64, f64)> = Vec::new();
         // half tangent of the angle delta at which mu_i = mu_o, in the front half
-        let fold = if self.edge == Edge::Fold && along > 0.0 { along / (row.r + nodes.mu_o) } else { -1.0 };
+        if lobe.fold && along > 0.0 {
+            cuts.push((along / (row.r + nodes.mu_o), f64::INFINITY));
+        }
+        if let Some(crease) = lobe.crease {
+            let blur = crease.blur(row.r);
+            cuts.extend(crease.roots(along, row.r, nodes.mu_o).map(|y| (y, blur)));
+        }
         let peak_end = row.quarter.min(end);
         // mu_i + mu_o vanishes at a negative angle whose tangent is -mu_o / along
         let near_normal =
-            if self.edge == Edge::Graze && along > 0.0 { nodes.mu_o / along } else { f64::INFINITY };
+            if lobe.edge == Edge::Graze && along > 0.0 { nodes.mu_o / along } else { f64::INFINITY };
         let peak_scale = 0.5 * width.min(near_normal).max(1e-9);
-        let mut add = |panel: usize, rule: &Graded, span: [f64; 2], from_horizon: bool| {
-            nodes.panel = panel;
-            fill(nodes, row, rule, weight, span, from_horizon);
+        nodes.panel = panel;
+        crease::pieces(peak_end, peak_scale, &cuts, self.level, crease::peak_order(), &mut |rule| {
+            fill(nodes, row, rule, weight, [0.0, peak_end], false);
             visit(nodes);
-        };
-        let at = fold / peak_end;
-        for piece in split(at).into_iter().flatten() {
-            let rule = Graded::between(peak_scale / peak_end, PEAK, self.level, piece);
-            add(panel, &rule, [0.0, peak_end], false);
-        }
+        });
         let near_end = row.above_horizon(end);
         if near_end < row.quarter {
             let length = row.quarter - near_end;
-            let at = if fold > 0.0 { (row.above_horizon(fold) - near_end) / length } else { -1.0 };
             // a fold that wanders from one polar panel to the other leaves errors that cancel exactly: one sum for both
-            let upper = if self.edge == Edge::Fold { panel } else { panel + 1 };
-            for piece in split(at).into_iter().flatten() {
-                add(upper, &self.horizon(row, near_end, length, piece), [near_end, row.quarter], true);
+            nodes.panel = if cuts.is_empty() { panel + 1 } else { panel };
+            for cut in &mut cuts {
+                cut.0 = row.above_horizon(cut.0) - near_end;
+            }
+            let mut add = |rule: &Graded| {
+                fill(nodes, row, rule, weight, [near_end, row.quarter], true);
+                visit(nodes);
+            };
+            if lobe.edge == Edge::Root && near_end <= 0.0 && lobe.crease.is_none() {
+                add(&Graded::root(PLAIN, self.level));
+            } else {
+                let (scale, order) = self.horizon(row);
+                crease::pieces(length, scale, &cuts, self.level, order, &mut add);
             }
         }
     }
 
-    fn horizon(&self, row: &Row, near_end: f64, length: f64, piece: [f64; 2]) -> Graded {
-        match self.edge {
-            Edge::Root if near_end <= 0.0 => Graded::root(PLAIN, self.level),
+    /// Scale, as a half tangent, and order of the panel at the horizon.
+    fn horizon(&self, row: &Row) -> (f64, Order) {
+        match self.lobe.edge {
             Edge::Layer | Edge::Graze => {
-                let least = self.alpha[0].min(self.alpha[1]);
-                let near = (self.view.mu.min(3.0 * least) / (2.0 * row.r)).clamp(1e-9, 1.0);
-                Graded::between(0.5 * near / length, HORIZON, self.level, piece)
+                let layer = self.lobe.layer;
+                let near = (self.view.mu.min(layer) / (2.0 * row.r)).clamp(1e-9 * layer.min(1.0), 1.0);
+                (0.5 * near, HORIZON)
             }
-            _ => Graded::between(1e3, PLAIN, self.level, piece),
+            _ => (1e3, PLAIN),
         }
     }
 }
@@ -223,11 +326,6 @@ fn turned(from: f64, step: f64) -> f64 {
     } else {
         libm::sin(from + step)
     }
-}
-
-/// (0, 1) in two pieces if `at` lies within, else in one.
-fn split(at: f64) -> [Option<[f64; 2]>; 2] {
-    if at > 0.0 && at < 1.0 { [Some([0.0, at]), Some([at, 1.0])] } else { [Some([0.0, 1.0]), None] }
 }
 
 fn square(x: f64) -> f64 {

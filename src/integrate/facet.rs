@@ -22,6 +22,8 @@ pub struct Facet {
     pub wm: DVec3,
     /// `wo . wm`.
     pub cos: f64,
+    /// Which panel in c it belongs to.
+    pub panel: usize,
     /// Weight in solid angle, sr; it counts the mirror image in the plane of incidence as well.
     pub weight: f64,
 }
@@ -83,7 +85,7 @@ pub fn visit(
     visit: &mut dyn FnMut(&Facet),
 ) {
     let s = ((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt();
-    for pair in breaks.windows(2) {
+    for (panel, pair) in breaks.windows(2).enumerate() {
         let (lo, hi) = (pair[0], pair[1]);
         if hi - lo <= 0.0 {
             continue;
@@ -102,7 +104,7 @@ pub fn visit(
             let row = Row { c, sin: (to_one * (1.0 + c)).sqrt(), mu, s };
             let (from, to) = range(&row);
             if to > from {
-                azimuths(&row, to_view, [from, to], level, (hi - lo) * weight, visit);
+                azimuths(&row, to_view, [from, to], level, ((hi - lo) * weight, panel), visit);
             }
         });
     }
@@ -114,7 +116,7 @@ fn azimuths(
     to_view: f64,
     [from, to]: [f64; 2],
     level: f64,
-    width: f64,
+    (width, panel): (f64, usize),
     visit: &mut dyn FnMut(&Facet),
 ) {
     let Row { c, sin, mu, s } = *row;
@@ -123,6 +125,6 @@ fn azimuths(
     let tilt = if sum > 0.0 { to_view * (c + mu) / sum } else { 0.0 };
     double_exponential(level, |t, _, weight| {
         let wm = row.normal(tilt, from + (to - from) * t);
-        visit(&Facet { wm, cos: c, weight: 2.0 * (to - from) * weight * width });
+        visit(&Facet { wm, cos: c, panel, weight: 2.0 * (to - from) * weight * width });
     });
 }

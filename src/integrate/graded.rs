@@ -90,6 +90,21 @@ impl Graded {
         }
     }
 
+    /// A rule from `span[0]`, where the integrand has a square root of the distance, to `span[1]`, on either side of it.
+    ///
+    /// The distance is `length * w^2`, w graded towards 0 on the scale `eps`: 1e3 for a true square root, the root of its
+    /// blur over the length for a blurred one.
+    #[must_use]
+    pub fn root_at(span: [f64; 2], eps: f64, order: Order, level: f64) -> Graded {
+        let mut rule = Graded::new(eps, order, level);
+        let length = span[1] - span[0];
+        for (x, w) in rule.node[..rule.len].iter_mut().zip(&mut rule.weight) {
+            *w *= 2.0 * *x * length.abs();
+            *x = span[0] + length * (*x * *x);
+        }
+        rule
+    }
+
     /// The rule of a panel whose integrand holds the square root of the variable: `t = x^2`.
     #[must_use]
     pub fn root(order: Order, level: f64) -> Graded {

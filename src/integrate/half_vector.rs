@@ -20,6 +20,7 @@
 //! about ten for each unit of the level, down to 4e-14, at about 9 `level`^2 evaluations (25 `level`^2 when both mu and
 //! alpha are tiny).
 
+use super::ellipse::GRAZING;
 use super::graded::{Graded, Order};
 use super::nodes::{BATCH, Nodes};
 use std::cell::Cell;
@@ -42,6 +43,8 @@ pub(super) struct Row {
     pub(super) r: f64,
     pub(super) half: f64,
     pub(super) quarter: f64,
+    /// 1 - half, which is as small as mu at grazing views.
+    rest: f64,
 }
 
 impl Row {
@@ -53,7 +56,8 @@ impl Row {
         let far = ((r + a.abs()) / (2.0 * r)).sqrt();
         let (sin, cos) = if a >= 0.0 { (far, near) } else { (near, far) };
         let half = sin / (1.0 + cos);
-        Row { cos_phi, sin_phi, along: a, r, half, quarter: half / (1.0 + (1.0 + half * half).sqrt()) }
+        let rest = cos * (1.0 + sin + cos) / ((1.0 + sin) * (1.0 + cos));
+        Row { cos_phi, sin_phi, along: a, r, half, quarter: half / (1.0 + (1.0 + half * half).sqrt()), rest }
     }
 
     /// From the azimuth of wm relative to wo.
@@ -111,14 +115,14 @@ pub fn visit(mu_o: f64, alpha: f64, reach: f64, level: f64, visit: &mut dyn FnMu
     let azimuth_scale = (mu / (s.max(1e-9) * FRAC_PI_2)).clamp(1e-9, 1e3);
     for (front, order) in [(true, AZIMUTH_FRONT), (false, AZIMUTH_BACK)] {
         // at mu = 0 the far half of the azimuth sees no light: t_max is 0 there
-        if !front && mu <= 0.0 {
+        if !front && mu < GRAZING {
             continue;
         }
         azimuth.set(azimuth_scale, order, level);
         // Gradings are shared by the rows of a side; the row at phi = 0 (or pi/2) is the most demanding one.
         let hardest = Row::relative(if front { 1.0 } else { 0.0 }, s, mu.max(1e-12));
         peak.set(0.5 * alpha / hardest.quarter.min(end), PEAK, level);
-        let scale = (mu.min(3.0 * alpha) / (2.0 * hardest.r)).clamp(1e-9, 1.0);
+        let scale = (mu.min(3.0 * alpha) / (2.0 * hardest.r)).clamp(1e-9 * alpha.min(1.0), 1.0);
         horizon.set(0.5 * scale / hardest.quarter, HORIZON, level);
         near.panel = if front { 0 } else { 2 };
         far.panel = near.panel + 1;
@@ -187,7 +191,7 @@ fn fill_peak(nodes: &mut Nodes, row: &Row, graded: &Graded, width: f64, end: f64
 
 /// Appends the nodes of one row above `t_max / 2`; `u = tan((t_max - t) / 2)` runs over `span`.
 fn fill_horizon(nodes: &mut Nodes, row: &Row, graded: &Graded, width: f64, span: [f64; 2]) {
-    let (half, mu) = (row.half, nodes.mu_o);
+    let (half, rest, mu) = (row.half, row.rest, nodes.mu_o);
     let length = span[1] - span[0];
     let len = graded.len;
     let at = nodes.len..nodes.len + len;
@@ -201,10 +205,11 @@ fn fill_horizon(nodes: &mut Nodes, row: &Row, graded: &Graded, width: f64, span:
     let out = &mut nodes.weight[at];
     for i in 0..len {
         let u = span[0] + length * node[i];
-        let t = (half - u) / (1.0 + half * u);
+        let below = 1.0 / (1.0 + half * u);
+        let t = (half - u) * below;
         let sec_u = 1.0 / (1.0 + u * u);
         // one division serves 1 / (1 + t^2) and 1 / cos = (1 + t^2) / (1 - t^2)
-        let (less, more) = ((1.0 - t) * (1.0 + t), 1.0 + t * t);
+        let (less, more) = ((rest + u * (1.0 + half)) * below * (1.0 + t), 1.0 + t * t);
         let inverse = 1.0 / (less * more);
         let sec = less * inverse;
         let sin = 2.0 * t * sec;

@@ -7,7 +7,7 @@
 //! Source: [Piessens1983](crate::cite::PIESSENS_1983), routine QAG with the pair (7, 15), and its estimate
 //! `m (200 |K - G| / m)^(3/2)`, m the integral of |f - mean f|, at most m.
 
-use super::ladder::{Estimate, MAX_CHANNELS, ROUNDING, Sums};
+use super::stop::{Estimate, MAX_CHANNELS, ROUNDING, Sums};
 
 /// Most panels.
 pub const MAX_PANELS: usize = 1000;

@@ -7,6 +7,7 @@
 pub mod adaptive;
 pub mod broad;
 pub mod chart;
+pub mod crease;
 pub mod density;
 pub mod ellipse;
 pub mod facet;
@@ -22,10 +23,12 @@ pub mod lobe;
 pub mod nodes;
 pub mod slab;
 pub mod sobol;
+pub mod stop;
 pub mod view;
 
 pub use chart::Chart;
-pub use ellipse::Edge;
-pub use ladder::{Estimate, MAX_CHANNELS, Sums};
+pub use crease::Crease;
+pub use ellipse::{Edge, FacetLobe};
 pub use nodes::{BATCH, MAX_PANELS, Nodes};
+pub use stop::{Estimate, MAX_CHANNELS, Sums, Trust};
 pub use view::View;

@@ -7,7 +7,7 @@ use glam::DVec3;
 pub const BATCH: usize = 128;
 
 /// Most panels of a chart; errors are estimated panel by panel, so that they cannot cancel unseen.
-pub const MAX_PANELS: usize = 16;
+pub const MAX_PANELS: usize = 48;
 
 /// Height at which a view in the horizon is evaluated: no f64 sum can tell it from 0.
 const JUST_ABOVE: f64 = 1e-150;

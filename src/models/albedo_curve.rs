@@ -4,7 +4,7 @@
 //! the roughness: each panel sees every singularity at a distance of its own length, so a fixed degree serves all.
 
 use super::Brdf;
-use crate::integrate::{BATCH, Estimate, MAX_CHANNELS, Nodes, Sums, adaptive, gauss, ladder};
+use crate::integrate::{BATCH, Estimate, Nodes, Sums, adaptive, gauss, ladder};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex};
@@ -14,6 +14,9 @@ const ORDER: usize = 16;
 
 /// Panels: [0, 2^-21], [2^-21, 2^-20], ..., [1/2, 1].
 const PANELS: usize = 22;
+
+/// Lebesgue constant of the points, rounded up: how much errors at the nodes may grow between them.
+const LEBESGUE: f64 = 3.0;
 
 /// Absolute tolerance of each node.
 pub const TOLERANCE: f64 = 1e-10;
@@ -25,27 +28,22 @@ pub struct AlbedoCurve {
     missing: Vec<[f64; ORDER]>,
     /// `2 int (1 - E) mu dmu` of this very curve.
     average: f64,
-    /// Largest estimated error: of the nodes, and of what the polynomials leave out.
-    error: f64,
+    /// Estimated errors of the panels: of the nodes, and of what the polynomials leave out.
+    errors: [f64; PANELS],
 }
 
 /// The directional albedo at a view cosine: of parts, of a mirror, by a reduction, in a chart, or by subdivision.
 #[must_use]
 pub fn directional_albedo(model: &dyn Brdf, mu_o: f64, tolerance: f64) -> Estimate {
     if let Some(parts) = model.parts() {
-        let mut total = Estimate { value: [0.0; MAX_CHANNELS], error: [0.0; MAX_CHANNELS], evaluations: 0 };
+        let mut total = Estimate::ZERO;
         for (weight, part) in parts.into_iter().filter(|(weight, _)| *weight > 0.0) {
-            let e = directional_albedo(part, mu_o, tolerance / weight);
-            total.value[0] += weight * e.value[0];
-            total.error[0] += weight * e.error[0];
-            total.evaluations = total.evaluations.saturating_add(e.evaluations);
+            total.add(weight, &directional_albedo(part, mu_o, tolerance / weight));
         }
         return total;
     }
     if let Some(e) = model.mirror(mu_o) {
-        let mut value = [0.0; MAX_CHANNELS];
-        value[0] = e;
-        return Estimate::exact(value);
+        return Estimate::exact_one(e);
     }
     if let Some(e) = model.reduced_albedo(mu_o, tolerance) {
         return e;
@@ -57,10 +55,12 @@ pub fn directional_albedo(model: &dyn Brdf, mu_o: f64, tolerance: f64) -> Estima
             sums[0] += f * (nodes.weight[i] * nodes.mu_i[i]);
         }
     };
-    match model.chart() {
+    let mut e = match model.chart() {
         Some(chart) => ladder::integrate(&chart, mu_o.into(), 1, tolerance, &mut add),
         None => adaptive::integrate(mu_o.into(), 1, tolerance, &mut add),
-    }
+    };
+    e.error[0] += model.own_error(mu_o);
+    e
 }
 
 /// Ends of a panel.
@@ -68,6 +68,15 @@ fn ends(panel: usize) -> (f64, f64) {
     let at = |k: usize| (0..k).fold(1.0, |x: f64, _| 0.5 * x);
     let hi = at(PANELS - 1 - panel);
     (if panel == 0 { 0.0 } else { 0.5 * hi }, hi)
+}
+
+/// The panel that holds a cosine.
+fn panel_of(mu: f64) -> usize {
+    let mut panel = PANELS - 1;
+    while panel > 0 && mu < ends(panel).0 {
+        panel -= 1;
+    }
+    panel
 }
 
 /// Chebyshev point of the first kind, in (-1, 1).
@@ -102,7 +111,7 @@ impl AlbedoCurve {
     /// The curve of a lobe.
     #[must_use]
     pub fn new(model: &dyn Brdf) -> AlbedoCurve {
-        let mut error = 0.0_f64;
+        let mut errors = [0.0; PANELS];
         let mut missing = Vec::with_capacity(PANELS);
         for panel in 0..PANELS {
             let (lo, hi) = ends(panel);
@@ -110,15 +119,17 @@ impl AlbedoCurve {
             for (i, v) in values.iter_mut().enumerate() {
                 let mu = 0.5 * ((lo + hi) + (hi - lo) * point(i));
                 let e = directional_albedo(model, mu, TOLERANCE);
-                error = error.max(e.error[0]);
+                errors[panel] = f64::max(errors[panel], e.error[0]);
                 *v = 1.0 - e.value[0];
             }
+            // the polynomial between the nodes magnifies their errors a little
+            errors[panel] *= LEBESGUE;
             // in the panel that holds the singularity coefficients fall like a power, and what is left out adds up
-            let rest = if panel == 0 { ORDER as f64 } else { 1.0 };
-            error = error.max(rest * tail(&values));
+            let rest = if panel == 0 { 2.0 * ORDER as f64 } else { 1.0 };
+            errors[panel] += rest * tail(&values);
             missing.push(values);
         }
-        let mut curve = AlbedoCurve { missing, average: 0.0, error };
+        let mut curve = AlbedoCurve { missing, average: 0.0, errors };
         // degree ORDER - 1 times mu: Gauss-Legendre of this order is exact
         let rule = gauss::rule(ORDER);
         curve.average = (0..PANELS)
@@ -133,12 +144,7 @@ impl AlbedoCurve {
     /// 1 - E(mu).
     #[must_use]
     pub fn missing(&self, mu: f64) -> f64 {
-        let mu = mu.clamp(0.0, 1.0);
-        let mut panel = PANELS - 1;
-        while panel > 0 && mu < ends(panel).0 {
-            panel -= 1;
-        }
-        self.on(panel, mu)
+        self.on(panel_of(mu), mu.clamp(0.0, 1.0))
     }
 
     /// E(mu).
@@ -153,10 +159,26 @@ impl AlbedoCurve {
         self.average
     }
 
-    /// Estimated absolute error of [`AlbedoCurve::missing`].
+    /// Largest estimated absolute error of [`AlbedoCurve::missing`].
     #[must_use]
     pub fn error(&self) -> f64 {
-        self.error
+        self.errors.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Estimated absolute error of [`AlbedoCurve::missing`] at a cosine.
+    #[must_use]
+    pub fn error_at(&self, mu: f64) -> f64 {
+        self.errors[panel_of(mu)]
+    }
+
+    /// Estimated absolute error of [`AlbedoCurve::missing_average`].
+    #[must_use]
+    pub fn average_error(&self) -> f64 {
+        let share = |panel: usize| {
+            let (lo, hi) = ends(panel);
+            (hi - lo) * (hi + lo) * self.errors[panel]
+        };
+        (0..PANELS).map(share).sum()
     }
 
     /// The polynomial of a panel, by the barycentric formula.

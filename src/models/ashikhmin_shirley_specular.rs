@@ -8,7 +8,7 @@
 use super::ashikhmin_shirley_diffuse::RS;
 use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity, Sample};
 use crate::cite;
-use crate::integrate::{BATCH, Chart, Edge, Nodes};
+use crate::integrate::{BATCH, Chart, Edge, FacetLobe, Nodes};
 use crate::math::{frame, special};
 use crate::terms::{blinn_phong, schlick};
 use glam::{DVec2, DVec3};
@@ -134,7 +134,7 @@ impl Brdf for Specular {
         } else {
             f64::INFINITY
         };
-        Some(Chart::Ellipse { alpha, reach, edge: Edge::Fold })
+        Some(Chart::Ellipse(FacetLobe { edge: Edge::Smooth, fold: true, ..FacetLobe::smith(alpha, reach) }))
     }
 
     fn turns(&self) -> bool {

@@ -79,9 +79,9 @@ impl Facets for Grooves {
         Some(Chart::HalfVector { alpha, reach, kinks: true })
     }
 
-    /// Where `cos^n` has fallen to a small part of the tolerance: `n/2 ln(1 + tan²)` is that many.
-    fn groove_reach(&self, tolerance: f64) -> Option<f64> {
-        let decay = 2.0 * grooves::decay(tolerance) / self.n.max(1e-3);
+    /// Where `cos^n` has fallen below rounding: `n/2 ln(1 + tan²)` is that many.
+    fn groove_reach(&self) -> Option<f64> {
+        let decay = 2.0 * grooves::DECAY / self.n.max(1e-3);
         Some(if decay < 100.0 { libm::atan(libm::expm1(decay).sqrt()) } else { std::f64::consts::FRAC_PI_2 })
     }
 }

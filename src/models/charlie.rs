@@ -6,6 +6,7 @@
 use super::cloth::{Cloth, ClothLobe};
 use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
 use crate::cite;
+use crate::integrate::Chart;
 use crate::math::frame;
 use crate::terms::charlie;
 use glam::DVec3;
@@ -21,7 +22,7 @@ pub(super) const ROUGHNESS: Param = Param::number(
 .also(&["r", "alpha"]);
 
 /// Cosines below this count as this.
-const HORIZON: f64 = 1e-7;
+pub(super) const HORIZON: f64 = 1e-7;
 
 /// Registry entry.
 pub static INFO: ModelInfo = ModelInfo {
@@ -71,6 +72,10 @@ fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
 }
 
 impl Cloth for Charlie {
+    fn chart(&self) -> Chart {
+        Chart::Broad { kinks: false, floor: HORIZON }
+    }
+
     fn value(&self, wo: DVec3, wi: DVec3) -> f64 {
         let Some(h) = frame::half_vector(wo, wi) else { return 0.0 };
         charlie::d(self.roughness, h.wh)

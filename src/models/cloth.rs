@@ -2,7 +2,7 @@
 //!
 //! The sources say that nothing better than uniform directions is needed; a cosine would starve the rim.
 
-use super::{Brdf, Sample};
+use super::{Brdf, Functional, Sample};
 use crate::integrate::{Chart, Estimate};
 use crate::math::{frame, special};
 use glam::{DVec2, DVec3};
@@ -14,13 +14,13 @@ pub trait Cloth: Debug + Send + Sync {
     /// f for two directions above the surface.
     fn value(&self, wo: DVec3, wi: DVec3) -> f64;
 
-    /// True if it has kinks inside the panels of the chart.
-    fn kinks(&self) -> bool {
-        false
+    /// The coordinates in which it is smooth: those of broad lobes, if nothing else is said.
+    fn chart(&self) -> Chart {
+        Chart::Broad { kinks: false, floor: 0.0 }
     }
 
-    /// E by a rule of its own, where it has one.
-    fn albedo(&self, _mu_o: f64, _tolerance: f64) -> Option<Estimate> {
+    /// As [`Brdf::reduced`].
+    fn reduced(&self, _mu_o: f64, _functionals: &[Functional], _tolerance: f64) -> Option<Estimate> {
         None
     }
 }
@@ -45,10 +45,10 @@ impl<C: Cloth> Brdf for ClothLobe<C> {
     }
 
     fn chart(&self) -> Option<Chart> {
-        Some(Chart::Broad { kinks: self.0.kinks() })
+        Some(self.0.chart())
     }
 
-    fn reduced_albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
-        self.0.albedo(mu_o, tolerance)
+    fn reduced(&self, mu_o: f64, functionals: &[Functional], tolerance: f64) -> Option<Estimate> {
+        self.0.reduced(mu_o, functionals, tolerance)
     }
 }

@@ -6,7 +6,7 @@
 use super::albedo_curve::{AlbedoCurve, directional_albedo};
 use super::lobes::{Diffuse, Part, Reflector, Sum};
 use super::microfacet::MASKING;
-use super::{Brdf, Param, ParamError, Params, Preset, Sample, microfacet};
+use super::{Brdf, Functional, Param, ParamError, Params, Preset, Sample, microfacet};
 use crate::integrate::{BATCH, Chart, Estimate, Nodes};
 use crate::terms::multiple_scattering as ms;
 use crate::terms::schlick;
@@ -48,6 +48,8 @@ pub(super) enum Rule {
     KullaConty {
         /// `F_ms`.
         colour: f64,
+        /// How much it changes with `E_avg`.
+        slope: f64,
     },
     /// `f_s (1 + F0 (1 - E_o) / E_o)`.
     Turquin {
@@ -155,7 +157,7 @@ impl Added {
 impl Reflector for Added {
     fn f(&self, wo: DVec3, wi: DVec3) -> f64 {
         match &self.rule {
-            Rule::KullaConty { colour } => {
+            Rule::KullaConty { colour, .. } => {
                 let average = self.white.missing_average();
                 colour * ms::kulla_conty(self.missing(wo.z), self.missing(wi.z), average)
             }
@@ -166,7 +168,7 @@ impl Reflector for Added {
     fn albedo(&self, mu_o: f64) -> Option<f64> {
         let missing = self.missing(mu_o);
         Some(match &self.rule {
-            Rule::KullaConty { colour } => colour * missing,
+            Rule::KullaConty { colour, .. } => colour * missing,
             Rule::Turquin { .. } => 0.0,
             Rule::FdezAguera { f_avg, coloured } => {
                 coloured.albedo(mu_o) * f_avg * missing / (1.0 - f_avg * missing)
@@ -174,8 +176,24 @@ impl Reflector for Added {
         })
     }
 
+    /// What is missing is known to the error of its curve, and so are the colours, to first order.
+    fn own_error(&self, mu_o: f64) -> f64 {
+        let (missing, error) = (self.missing(mu_o), self.white.error_at(mu_o));
+        match &self.rule {
+            Rule::KullaConty { colour, slope } => {
+                colour * error + slope * missing * self.white.average_error()
+            }
+            Rule::Turquin { .. } => 0.0,
+            Rule::FdezAguera { f_avg, coloured } => {
+                let rest = 1.0 - f_avg * missing;
+                let e = coloured.albedo(mu_o);
+                f_avg / rest * (coloured.error_at(mu_o) * missing + e * error / rest)
+            }
+        }
+    }
+
     fn chart(&self) -> Option<Chart> {
-        Some(Chart::Broad { kinks: false })
+        Some(Chart::Broad { kinks: false, floor: 0.0 })
     }
 }
 
@@ -216,11 +234,18 @@ impl Brdf for Scaled {
         out[..nodes.len].iter_mut().for_each(|o| *o *= factor);
     }
 
-    fn reduced_albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
+    fn reduced(&self, mu_o: f64, functionals: &[Functional], tolerance: f64) -> Option<Estimate> {
+        let [Functional::One] = functionals else { return None };
         let factor = self.factor(mu_o);
-        let mut e = directional_albedo(&*self.single, mu_o, tolerance / factor);
-        e.value[0] *= factor;
-        e.error[0] *= factor;
+        let single = directional_albedo(&*self.single, mu_o, tolerance / factor);
+        let mut e = Estimate::ZERO;
+        e.add(factor, &single);
+        e.error[0] += self.own_error(mu_o);
         Some(e)
+    }
+
+    /// The factor is `1 + F0 (1 / E - 1)`, times at most E.
+    fn own_error(&self, mu_o: f64) -> f64 {
+        self.f0 * self.white.error_at(mu_o) / self.white.albedo(mu_o).max(f64::MIN_POSITIVE)
     }
 }

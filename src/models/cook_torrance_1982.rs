@@ -5,7 +5,7 @@
 
 use super::grooves::{self, Grooves};
 use super::microfacet::{ALPHA, Beckmann, F0, F90, Fresnel};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity, Sample};
+use super::{Alias, Brdf, Functional, Known, Laws, ModelInfo, ParamError, Params, Quantity, Sample};
 use crate::cite;
 use crate::integrate::{Chart, Estimate};
 use crate::math::frame;
@@ -89,12 +89,16 @@ impl Brdf for CookTorrance {
     }
 
     /// Four times that of the modern form.
-    fn reduced_albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
-        if mu_o <= 0.0 || self.alpha <= 0.0 {
+    fn reduced(&self, mu_o: f64, functionals: &[Functional], tolerance: f64) -> Option<Estimate> {
+        if self.alpha <= 0.0 {
             return None;
         }
         let d = |wm| 4.0 * self.distribution.d(wm);
-        let reach = grooves::gaussian_reach(self.alpha, tolerance);
-        Some(Grooves { d: &d, reach, fresnel: self.fresnel }.albedo(mu_o, tolerance))
+        let reach = grooves::gaussian_reach(self.alpha);
+        Some(Grooves { d: &d, heights: &[], reach, fresnel: self.fresnel }.integrate(
+            mu_o,
+            functionals,
+            tolerance,
+        ))
     }
 }

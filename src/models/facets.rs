@@ -5,7 +5,7 @@
 
 use super::grooves::Grooves;
 use super::microfacet::Fresnel;
-use super::{Brdf, Sample};
+use super::{Brdf, Functional, Sample};
 use crate::integrate::{Chart, Estimate};
 use crate::math::frame::{self, HalfVector};
 use glam::{DVec2, DVec3};
@@ -25,9 +25,14 @@ pub trait Facets: Debug + Send + Sync {
     /// The coordinates in which it is smooth.
     fn chart(&self) -> Option<Chart>;
 
-    /// Largest angle of a normal from the macronormal that matters to E at a tolerance, for V-shaped grooves: they have a
+    /// As [`Brdf::own_error`].
+    fn own_error(&self) -> f64 {
+        0.0
+    }
+
+    /// Largest angle of a normal from the macronormal that matters to E, for V-shaped grooves: they have a
     /// rule of their own.
-    fn groove_reach(&self, _tolerance: f64) -> Option<f64> {
+    fn groove_reach(&self) -> Option<f64> {
         None
     }
 }
@@ -72,10 +77,18 @@ impl<L: Facets> Brdf for HalfVectorLobe<L> {
         self.facets.chart()
     }
 
-    fn reduced_albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
-        let reach = self.facets.groove_reach(tolerance).filter(|_| mu_o > 0.0)?;
+    fn reduced(&self, mu_o: f64, functionals: &[Functional], tolerance: f64) -> Option<Estimate> {
+        let reach = self.facets.groove_reach()?;
         let d = |wm| self.facets.d(wm);
-        Some(Grooves { d: &d, reach, fresnel: self.fresnel }.albedo(mu_o, tolerance))
+        Some(Grooves { d: &d, heights: &[], reach, fresnel: self.fresnel }.integrate(
+            mu_o,
+            functionals,
+            tolerance,
+        ))
+    }
+
+    fn own_error(&self, _mu_o: f64) -> f64 {
+        if self.flat { 0.0 } else { self.facets.own_error() }
     }
 
     fn mirror(&self, mu_o: f64) -> Option<f64> {

@@ -7,11 +7,11 @@
 //! ```
 //! R and T are the parts of the flux that arrives along `wo`; R + T <= 1, the rest is masked.
 
-use super::microfacet::{Distribution, Masking};
+use super::microfacet::{Distribution, Fresnel, Masking};
 use super::{Brdf, Btdf, Param, Params, Sample};
 use crate::integrate::facet::{self, Facet};
-use crate::integrate::ladder::ROUNDING;
-use crate::integrate::{Chart, Edge, Estimate, MAX_CHANNELS};
+use crate::integrate::stop::{Level, Trust, climb_sure};
+use crate::integrate::{Chart, Estimate, FacetLobe};
 use crate::math::frame;
 use crate::terms::fresnel;
 use crate::terms::refraction::{self, Across};
@@ -28,12 +28,8 @@ pub(super) const ACROSS: Param = Param::choice(
 /// Levels of the rule: 4 nodes each in both coordinates of each panel.
 const LEVELS: [f64; 9] = [2.0, 3.0, 4.5, 6.5, 9.0, 12.0, 16.0, 21.0, 27.0];
 
-/// How much smaller than the difference of two levels the error of the finer one is taken to be; measured against
-/// `integrals.csv` it is smaller by ten or more.
-const GAIN: f64 = 2.0;
-
-/// Share of the difference before last that is added to the last one: two levels agree by chance in one of thirty cases.
-const REMEMBERED: f64 = 0.2;
+/// Trust in it.
+const TRUST: Trust = Trust { gain: &[2.0], memory: 0.2 };
 
 /// A rough dielectric interface.
 #[derive(Debug)]
@@ -75,16 +71,6 @@ impl<D: Distribution> Glass<D> {
             * self.masking().visibility(&self.distribution, wo, wi)
     }
 
-    /// Ends of the panels in c for R.
-    fn reflection_breaks(&self, mu: f64) -> Vec<f64> {
-        let half = 0.5 * libm::acos(mu);
-        let quarter = std::f64::consts::FRAC_PI_4;
-        let start = libm::cos(quarter + half);
-        let mut breaks = vec![start, libm::cos(quarter - half), mu];
-        self.push_critical(&mut breaks);
-        between(start, breaks)
-    }
-
     /// Ends of the panels in c for T.
     fn transmission_breaks(&self, mu: f64) -> Vec<f64> {
         let s = ((1.0 - mu) * (1.0 + mu)).sqrt();
@@ -103,12 +89,6 @@ impl<D: Distribution> Glass<D> {
         between(start, breaks)
     }
 
-    fn push_critical(&self, breaks: &mut Vec<f64>) {
-        if self.eta < 1.0 {
-            breaks.push(fresnel::cos_critical(self.eta));
-        }
-    }
-
     /// From the denser side: the height `wm.z` above which a facet refracts to the upper side.
     fn highest(&self, c: f64, mu: f64) -> f64 {
         let r = 1.0 / self.eta;
@@ -117,32 +97,15 @@ impl<D: Distribution> Glass<D> {
         r * mu * (r * c + cos_t) / ((r - 1.0) * (r + 1.0))
     }
 
-    fn reflected_albedo(&self, mu: f64, level: f64, count: &mut u32) -> f64 {
-        let (masking, wo) = (self.masking(), frame::from_mu(mu));
-        let mut sum = 0.0;
-        let mut add = |f: &Facet| {
-            *count = count.saturating_add(1);
-            let wi = 2.0 * f.cos * f.wm - wo;
-            if wi.z > 0.0 {
-                let v = masking.visibility(&self.distribution, wo, wi);
-                let reflectance = fresnel::dielectric(f.cos, self.eta).unpolarised();
-                sum += f.weight * reflectance * self.distribution.d(f.wm) * 4.0 * f.cos * v * wi.z;
-            }
-        };
-        let range = |row: &facet::Row| (0.0, row.azimuth_of_height(0.5 * mu / row.c));
-        facet::visit(mu, &self.reflection_breaks(mu), level, &range, &mut add);
-        sum
-    }
-
-    fn transmitted_albedo(&self, mu: f64, level: f64, count: &mut u32) -> f64 {
+    fn transmitted_albedo(&self, mu: f64, level: f64, out: &mut Level) {
         let wo = frame::from_mu(mu);
-        let mut sum = 0.0;
         let mut add = |f: &Facet| {
-            *count = count.saturating_add(1);
+            out.count(1);
             let Some(wt) = fresnel::refract(wo, f.wm, self.eta) else { return };
             if wt.z < 0.0 && f.wm.z > 0.0 {
                 let through = fresnel::dielectric_transmittance(f.cos, self.eta).unpolarised();
-                sum += f.weight * through * self.distribution.d(f.wm) * f.cos * self.g2_over_mu(wo, wt);
+                out.panel(f.panel)[0] +=
+                    f.weight * through * self.distribution.d(f.wm) * f.cos * self.g2_over_mu(wo, wt);
             }
         };
         let range = |row: &facet::Row| {
@@ -150,7 +113,6 @@ impl<D: Distribution> Glass<D> {
             (from, row.horizon())
         };
         facet::visit(mu, &self.transmission_breaks(mu), level, &range, &mut add);
-        sum
     }
 
     /// `G2(wo, wt) / mu_o`, finite at grazing.
@@ -165,28 +127,6 @@ impl<D: Distribution> Glass<D> {
             Across::Sum => quotient(mu_t, self.distribution.masked_area(wo, wt)),
             Across::Beta => quotient(refraction::g2(self.across, &self.distribution, wo, wt), mu),
         }
-    }
-
-    /// Raises the level until three agree.
-    fn climb(&self, tolerance: f64, at: impl Fn(f64, &mut u32) -> f64) -> Estimate {
-        let first =
-            usize::from(tolerance < 1e-3) + usize::from(tolerance < 1e-6) + usize::from(tolerance < 1e-9);
-        let mut evaluations = 0;
-        let mut coarse = at(LEVELS[first], &mut evaluations);
-        let mut error = f64::INFINITY;
-        let mut before: Option<f64> = None;
-        for level in &LEVELS[first + 1..] {
-            let fine = at(*level, &mut evaluations);
-            let difference = (fine - coarse).abs();
-            error = (difference + REMEMBERED * before.unwrap_or(0.0)) / GAIN + fine.abs() * ROUNDING;
-            coarse = fine;
-            if before.replace(difference).is_some() && error <= tolerance {
-                break;
-            }
-        }
-        let mut estimate = Estimate::exact([0.0; MAX_CHANNELS]);
-        (estimate.value[0], estimate.error[0], estimate.evaluations) = (coarse, error, evaluations);
-        estimate
     }
 }
 
@@ -244,14 +184,10 @@ impl<D: Distribution> Brdf for Glass<D> {
         }
     }
 
-    /// From the denser side total reflection leaves a kink inside the panels.
+    /// From the denser side total reflection is a crease.
     fn chart(&self) -> Option<Chart> {
-        let reach = self.distribution.reach();
-        let kinks = self.eta < 1.0;
-        Some(match self.distribution.alpha() {
-            Some(alpha) => Chart::HalfVector { alpha, reach, kinks },
-            None => Chart::Ellipse { alpha: self.distribution.widths(), reach, edge: Edge::Layer },
-        })
+        let crease = Fresnel::Dielectric { eta: self.eta }.crease();
+        Some(Chart::facets(FacetLobe { crease, ..self.distribution.facets() }))
     }
 
     fn turns(&self) -> bool {
@@ -260,12 +196,6 @@ impl<D: Distribution> Brdf for Glass<D> {
 
     fn mirror(&self, mu_o: f64) -> Option<f64> {
         self.flat.then(|| fresnel::dielectric(mu_o, self.eta).unpolarised())
-    }
-
-    /// From the denser side, where the chart has a kink; R of the module.
-    fn reduced_albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
-        self.distribution.alpha().filter(|_| self.eta < 1.0)?;
-        Some(self.climb(tolerance, |level, count| self.reflected_albedo(mu_o, level, count)))
     }
 
     fn transmission(&self) -> Option<&dyn Btdf> {
@@ -302,11 +232,15 @@ impl<D: Distribution> Btdf for Glass<D> {
 
     fn albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
         if self.flat {
-            let mut value = [0.0; MAX_CHANNELS];
-            value[0] = fresnel::dielectric_transmittance(mu_o, self.eta).unpolarised();
-            return Some(Estimate::exact(value));
+            return Some(Estimate::exact_one(
+                fresnel::dielectric_transmittance(mu_o, self.eta).unpolarised(),
+            ));
         }
         self.distribution.alpha()?;
-        Some(self.climb(tolerance, |level, count| self.transmitted_albedo(mu_o, level, count)))
+        let first =
+            usize::from(tolerance < 1e-3) + usize::from(tolerance < 1e-6) + usize::from(tolerance < 1e-9);
+        Some(climb_sure(TRUST, first..LEVELS.len(), 1, tolerance, |j, level| {
+            self.transmitted_albedo(mu_o, LEVELS[j], level);
+        }))
     }
 }

@@ -8,7 +8,7 @@ use super::lobes::{Part, Sum, cosine_pdf, cosine_sample};
 use super::microfacet::Ggx;
 use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity, Sample, charlie};
 use crate::cite;
-use crate::integrate::Chart;
+use crate::integrate::{Chart, ellipse::FacetLobe};
 use crate::math::frame;
 use crate::terms::schlick::{schlick, weight};
 use crate::terms::smith::Ndf;
@@ -233,12 +233,24 @@ impl Brdf for Lobe {
 
     /// Below a sheen the larger of two albedos leaves a kink.
     fn chart(&self) -> Option<Chart> {
-        let kinks = self.material.curve.is_some() && self.kind == Kind::Specular;
+        let alpha = [self.facets().alpha_x(); 2];
         Some(match self.kind {
-            Kind::Diffuse | Kind::Sheen => Chart::Broad { kinks: false },
-            Kind::Specular | Kind::Coat => {
-                Chart::HalfVector { alpha: self.facets().alpha_x(), reach: f64::INFINITY, kinks }
+            Kind::Diffuse => Chart::Broad { kinks: false, floor: 0.0 },
+            Kind::Sheen => Chart::Broad { kinks: false, floor: charlie::HORIZON },
+            Kind::Specular if self.material.curve.is_some() => {
+                Chart::Ellipse(FacetLobe { fold: true, ..FacetLobe::smith(alpha, f64::INFINITY) })
             }
+            Kind::Specular | Kind::Coat => Chart::facets(FacetLobe::smith(alpha, f64::INFINITY)),
         })
+    }
+
+    /// What the sheen leaves is known to the error of its curve.
+    fn own_error(&self, mu_o: f64) -> f64 {
+        let below = matches!(self.kind, Kind::Specular | Kind::Diffuse);
+        self.material
+            .curve
+            .as_ref()
+            .filter(|_| below)
+            .map_or(0.0, |curve| self.material.sheen * curve.error().min(1.0).max(curve.error_at(mu_o)))
     }
 }

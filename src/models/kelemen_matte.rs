@@ -79,7 +79,11 @@ impl Reflector for Matte {
         Some(self.curve.missing(mu_o).max(0.0))
     }
 
+    fn own_error(&self, mu_o: f64) -> f64 {
+        self.curve.error_at(mu_o)
+    }
+
     fn chart(&self) -> Option<Chart> {
-        Some(Chart::Broad { kinks: false })
+        Some(Chart::Broad { kinks: false, floor: 0.0 })
     }
 }

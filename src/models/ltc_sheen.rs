@@ -4,9 +4,9 @@
 //! one minus that.
 
 use super::cloth::{Cloth, ClothLobe};
-use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Brdf, Functional, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
 use crate::cite;
-use crate::integrate::{Estimate, MAX_CHANNELS};
+use crate::integrate::Estimate;
 use crate::math::frame;
 use crate::terms::ltc_sheen::Sheen;
 use glam::DVec3;
@@ -61,9 +61,9 @@ impl Cloth for Fibres {
         sheen.reflectance.max(0.0) * sheen.lobe().density(turn(wo, wi)) / wi.z
     }
 
-    fn albedo(&self, mu_o: f64, _tolerance: f64) -> Option<Estimate> {
-        let mut e = Estimate::exact([0.0; MAX_CHANNELS]);
-        e.value[0] = Sheen::new(mu_o, self.roughness).reflectance.max(0.0);
+    fn reduced(&self, mu_o: f64, functionals: &[Functional], _tolerance: f64) -> Option<Estimate> {
+        let [Functional::One] = functionals else { return None };
+        let mut e = Estimate::exact_one(Sheen::new(mu_o, self.roughness).reflectance.max(0.0));
         e.error[0] = 1e-15;
         Some(e)
     }

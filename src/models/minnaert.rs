@@ -5,9 +5,9 @@
 //!
 //! Recipe: `model = "minnaert"`, `params = { rho = 0.5, k = 1.5 }`.
 
-use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity, Sample};
+use super::{Brdf, Functional, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity, Sample};
 use crate::cite;
-use crate::integrate::{Chart, Estimate, MAX_CHANNELS};
+use crate::integrate::{Chart, Estimate};
 use crate::math::{frame, special};
 use glam::{DVec2, DVec3};
 use std::f64::consts::FRAC_1_PI;
@@ -92,9 +92,8 @@ impl Brdf for Minnaert {
         Some(Chart::Horizon)
     }
 
-    fn reduced_albedo(&self, mu_o: f64, _tolerance: f64) -> Option<Estimate> {
-        let mut value = [0.0; MAX_CHANNELS];
-        value[0] = 2.0 * self.rho * libm::pow(mu_o, self.k - 1.0) / (self.k + 1.0);
-        Some(Estimate::exact(value))
+    fn reduced(&self, mu_o: f64, functionals: &[Functional], _tolerance: f64) -> Option<Estimate> {
+        let [Functional::One] = functionals else { return None };
+        Some(Estimate::exact_one(2.0 * self.rho * libm::pow(mu_o, self.k - 1.0) / (self.k + 1.0)))
     }
 }

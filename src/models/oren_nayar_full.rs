@@ -9,10 +9,10 @@ use super::lobes::{Diffuse, Reflector};
 use super::oren_nayar::{RHO, SIGMA};
 use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
 use crate::cite;
-use crate::integrate::Chart;
+use crate::integrate::{Chart, Estimate, line};
 use crate::math::frame;
 use glam::DVec3;
-use std::f64::consts::FRAC_1_PI;
+use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
 
 /// Registry entry.
 pub static INFO: ModelInfo = ModelInfo {
@@ -82,6 +82,33 @@ impl OrenNayarFull {
         self.c1 - self.c2 * 6.0 * FRAC_1_PI + 2.0 * self.twice
     }
 
+    /// What the formula is over rho / pi as a function of c alone, `k0 + k1 c`, for c >= 0 and for c < 0.
+    fn row(&self, theta_o: f64, theta_i: f64) -> (f64, [f64; 2]) {
+        let (a, b) = (theta_o.max(theta_i), theta_o.min(theta_i));
+        let turn = 2.0 * FRAC_1_PI * b;
+        let area = 2.0 * FRAC_1_PI * a * turn;
+        let (tan, between) = (self.c2 * libm::tan(b), self.c3 * area * area * libm::tan(0.5 * (a + b)));
+        let twice = self.twice * turn * turn;
+        let near = tan * libm::sin(a) - between - twice;
+        let far = tan * (libm::sin(a) - turn * turn * turn) + between - twice;
+        (self.c1 + between + self.twice, [near, far])
+    }
+
+    /// `2 int_0^pi max(0, k0 + k1 c) dphi`, between the azimuths at which either half changes its sign.
+    fn circle(&self, theta_o: f64, theta_i: f64) -> f64 {
+        let (k0, slopes) = self.row(theta_o, theta_i);
+        let mut sum = 0.0;
+        for (k1, [from, to]) in slopes.into_iter().zip([[0.0, FRAC_PI_2], [FRAC_PI_2, PI]]) {
+            let root = -k0 / k1;
+            let turn = if root.abs() < 1.0 { libm::acos(root).clamp(from, to) } else { to };
+            for [lo, hi] in [[from, turn], [turn, to]] {
+                let value = k0 * (hi - lo) + k1 * (libm::sin(hi) - libm::sin(lo));
+                sum += value.max(0.0);
+            }
+        }
+        2.0 * sum
+    }
+
     /// The formula before the clamp.
     fn unclamped(&self, wo: DVec3, wi: DVec3) -> f64 {
         let (theta_o, theta_i) = (frame::theta(wo), frame::theta(wi));
@@ -102,6 +129,17 @@ impl OrenNayarFull {
 impl Reflector for OrenNayarFull {
     fn f(&self, wo: DVec3, wi: DVec3) -> f64 {
         self.unclamped(wo, wi).max(0.0)
+    }
+
+    /// The azimuth is closed, also where the clamp acts; the height of wi is left.
+    fn reduced(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
+        let theta_o = libm::acos(mu_o.clamp(0.0, 1.0));
+        let scale = self.rho * FRAC_1_PI;
+        let e = line::integrate(&[0.0, theta_o, FRAC_PI_2], 1, tolerance, &mut |theta, out| {
+            let (sin, cos) = libm::sincos(theta);
+            out[0] = scale * sin * cos * self.circle(theta_o, theta);
+        });
+        Some(e)
     }
 
     /// None where the clamp acts: its edge runs across every panel.

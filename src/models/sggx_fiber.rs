@@ -5,6 +5,7 @@
 use super::cloth::{Cloth, ClothLobe};
 use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
 use crate::cite;
+use crate::integrate::{Chart, FacetLobe};
 use crate::terms::sggx;
 use glam::DVec3;
 
@@ -48,6 +49,10 @@ fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
 }
 
 impl Cloth for Layer {
+    fn chart(&self) -> Chart {
+        Chart::Ellipse(FacetLobe::upright(self.sigma))
+    }
+
     fn value(&self, wo: DVec3, wi: DVec3) -> f64 {
         sggx::single_scattering(self.sigma, wo, wi)
     }

@@ -79,7 +79,7 @@ impl Facets for Grooves {
         Some(Chart::HalfVector { alpha: self.distribution.alpha_x(), reach: 6.5, kinks: true })
     }
 
-    fn groove_reach(&self, tolerance: f64) -> Option<f64> {
-        Some(grooves::gaussian_reach(self.distribution.alpha_x(), tolerance))
+    fn groove_reach(&self) -> Option<f64> {
+        Some(grooves::gaussian_reach(self.distribution.alpha_x()))
     }
 }

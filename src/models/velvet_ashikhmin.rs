@@ -6,9 +6,9 @@ use super::cloth::{Cloth, ClothLobe};
 use super::facets::vcavity_visibility;
 use super::grooves::Grooves;
 use super::microfacet::Fresnel;
-use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Alias, Brdf, Functional, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
 use crate::cite;
-use crate::integrate::Estimate;
+use crate::integrate::{Chart, Estimate};
 use crate::math::frame;
 use crate::terms::velvet;
 use glam::DVec3;
@@ -44,6 +44,9 @@ pub static INFO: ModelInfo = ModelInfo {
     build,
 };
 
+/// Cotangents in units of sigma between which the inverted Gaussian falls.
+const HEIGHTS: [f64; 3] = [0.6, 1.7, 4.0];
+
 #[derive(Debug)]
 struct Velvet {
     sigma: f64,
@@ -59,13 +62,18 @@ impl Cloth for Velvet {
         velvet::d_2000(self.sigma, h.wh) * vcavity_visibility(wo, wi, &h)
     }
 
-    fn kinks(&self) -> bool {
-        true
+    fn chart(&self) -> Chart {
+        Chart::Broad { kinks: true, floor: 0.0 }
     }
 
-    fn albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
+    fn reduced(&self, mu_o: f64, functionals: &[Functional], tolerance: f64) -> Option<Estimate> {
         let d = |wm| velvet::d_2000(self.sigma, wm);
         let white = Fresnel::Schlick { f0: 1.0, f90: 1.0 };
-        (mu_o > 0.0).then(|| Grooves { d: &d, reach: FRAC_PI_2, fresnel: white }.albedo(mu_o, tolerance))
+        let heights = HEIGHTS.map(|z| z * self.sigma / (1.0 + z * z * self.sigma * self.sigma).sqrt());
+        Some(Grooves { d: &d, heights: &heights, reach: FRAC_PI_2, fresnel: white }.integrate(
+            mu_o,
+            functionals,
+            tolerance,
+        ))
     }
 }

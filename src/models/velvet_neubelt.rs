@@ -6,6 +6,7 @@ use super::cloth::{Cloth, ClothLobe};
 use super::microfacet::{F0, F90, Fresnel};
 use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
 use crate::cite;
+use crate::integrate::{Chart, FacetLobe};
 use crate::math::frame;
 use crate::terms::velvet;
 use glam::DVec3;
@@ -65,6 +66,10 @@ fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
 }
 
 impl Cloth for Velvet {
+    fn chart(&self) -> Chart {
+        Chart::Ellipse(FacetLobe::upright(self.alpha))
+    }
+
     fn value(&self, wo: DVec3, wi: DVec3) -> f64 {
         let Some(h) = frame::half_vector(wo, wi) else { return 0.0 };
         self.fresnel.at(h.cos_d) * velvet::d_2007(self.alpha, h.wh) * velvet::visibility_neubelt(wo.z, wi.z)

@@ -6,7 +6,8 @@ use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInf
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::graded::{Graded, Order};
-use crate::integrate::{Estimate, MAX_CHANNELS, View};
+use crate::integrate::stop::{Trust, climb};
+use crate::integrate::{Estimate, View};
 use crate::models::Brdf;
 use crate::terms::fresnel;
 use std::f64::consts::FRAC_PI_2;
@@ -98,21 +99,21 @@ impl Range {
         Range { scale, panels }
     }
 
-    /// Nodes in mu and weights of a level.
-    fn nodes(&self, level: f64) -> Vec<(f64, f64)> {
+    /// Panels, nodes in mu and weights of a level.
+    fn nodes(&self, level: f64) -> Vec<(usize, f64, f64)> {
         let mut nodes = Vec::new();
-        for [from, to] in &self.panels {
+        for (panel, [from, to]) in self.panels.iter().enumerate() {
             let length = (to - from).abs();
             let rule = Graded::new(self.scale / length.max(1e-9), Order(1.0, 0.25), level);
             for (x, w) in rule.node[..rule.len].iter().zip(&rule.weight) {
-                nodes.push((from + (to - from) * x, length * w));
+                nodes.push((panel, from + (to - from) * x, length * w));
             }
         }
         nodes
     }
 }
 
-/// `2 int E mu dmu`, averaged over the azimuth for a model that depends on it, with the order raised until two orders agree; inner errors are added by their weights.
+/// `2 int E mu dmu`, averaged over the azimuth for a model that depends on it, with the order raised as [`stop`](crate::integrate::stop) says; inner errors are added by their weights.
 ///
 /// # Errors
 /// As [`integrate`].
@@ -134,34 +135,28 @@ pub fn average_of(
     tolerance: f64,
     mut at: impl FnMut(View, f64) -> Result<Estimate, TexelError>,
 ) -> Result<Estimate, TexelError> {
-    let mut previous: Option<[f64; MAX_CHANNELS]> = None;
-    let mut evaluations = 0u32;
-    let mut result = Estimate::exact([0.0; MAX_CHANNELS]);
-    for level in [6.0, 9.0, 13.0, 19.0, 27.0, 38.0] {
-        let (mut value, mut error) = ([0.0; MAX_CHANNELS], [0.0; MAX_CHANNELS]);
-        let azimuths = azimuths(turns, level);
-        for (mu, w) in range.nodes(level) {
+    climb(TRUST, 0..LEVELS.len(), channels, tolerance, |j, level| {
+        let azimuths = azimuths(turns, LEVELS[j]);
+        for (panel, mu, w) in range.nodes(LEVELS[j]) {
             for &phi in &azimuths {
                 let e = at(View { mu, phi }, 0.25 * tolerance)?;
                 let weight = 2.0 * mu * w / azimuths.len() as f64;
-                evaluations = evaluations.saturating_add(e.evaluations);
+                level.evaluations = level.evaluations.saturating_add(e.evaluations);
                 for c in 0..channels {
-                    value[c] += weight * e.value[c];
-                    error[c] += weight * e.error[c];
+                    level.panel(panel)[c] += weight * e.value[c];
+                    level.inner[c] += weight * e.error[c];
                 }
             }
         }
-        for c in 0..channels {
-            error[c] += previous.map_or(f64::INFINITY, |p| (value[c] - p[c]).abs());
-        }
-        result = Estimate { value, error, evaluations };
-        if error[..channels].iter().all(|e| *e <= tolerance) {
-            break;
-        }
-        previous = Some(value);
-    }
-    Ok(result)
+        Ok(())
+    })
 }
+
+/// Levels of the rule in mu.
+const LEVELS: [f64; 7] = [4.0, 6.0, 9.0, 13.0, 19.0, 27.0, 38.0];
+
+/// Trust in them.
+const TRUST: Trust = Trust { gain: &[1.0], memory: 0.1 };
 
 /// View azimuths to average over: midpoints of equal parts of a quarter, since both tangents are lines of symmetry.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "levels are small and positive")]

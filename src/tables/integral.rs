@@ -5,62 +5,22 @@
 use super::{TexelError, finite};
 use crate::integrate::{BATCH, Estimate, MAX_CHANNELS, Nodes, Sums, View, adaptive, ladder};
 use crate::models::Brdf;
-use crate::terms::{fresnel, schlick};
+pub use crate::models::Functional;
 
-/// The weight g_j of a channel, a function of `v = wo . wh`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Functional {
-    /// g = 1: the directional albedo.
-    One,
-    /// g = (1 - v)^5: the part that follows F90.
-    Schlick,
-    /// g = 1 - (1 - v)^5: the part that follows F0.
-    SchlickComplement,
-    /// g = v (1 - v)^6 / (1/7 (6/7)^6), which is 1 at v = 1/7: the part that follows the deviation from Schlick at 82 degrees.
-    F82,
-    /// g = (1 - v)^e.
-    Power(f64),
-    /// g = (F(v) - F0) / (1 - F0) of a dielectric of relative index eta; Schlick's cosine replaced by the exact curve.
-    Dielectric(f64),
-}
-
-impl Functional {
-    /// The weight at `v`.
-    #[must_use]
-    pub fn at(self, v: f64) -> f64 {
-        let m = 1.0 - v;
-        let fc = (m * m) * (m * m) * m;
-        match self {
-            Functional::One => 1.0,
-            Functional::Schlick => fc,
-            Functional::SchlickComplement => 1.0 - fc,
-            Functional::F82 => v * fc * m * schlick::F82_SCALE,
-            Functional::Power(e) => libm::pow(m.max(0.0), e),
-            Functional::Dielectric(eta) => relative_fresnel(v, eta),
-        }
-    }
-
-    /// The channel from the two sums that the usual functionals are made of.
-    fn of(self, sums: Batch) -> Option<f64> {
-        match self {
-            Functional::One => Some(sums.one),
-            Functional::Schlick => Some(sums.schlick),
-            Functional::SchlickComplement => Some(sums.one - sums.schlick),
-            _ => None,
-        }
-    }
-
-    /// The channel of a batch by its weight at every node.
-    fn sum(self, values: &[f64; BATCH], nodes: &Nodes) -> f64 {
-        let term = |i: usize| values[i] * (nodes.weight[i] * nodes.mu_i[i]) * self.at(nodes.cos_d[i]);
-        (0..nodes.len).map(term).sum()
+/// The channel from the two sums that the usual functionals are made of.
+fn from_sums(g: Functional, sums: Batch) -> Option<f64> {
+    match g {
+        Functional::One => Some(sums.one),
+        Functional::Schlick => Some(sums.schlick),
+        Functional::SchlickComplement => Some(sums.one - sums.schlick),
+        _ => None,
     }
 }
 
-/// `(F - F0) / (1 - F0)`; 0 at eta = 1, where nothing is reflected.
-fn relative_fresnel(v: f64, eta: f64) -> f64 {
-    let f0 = fresnel::dielectric(1.0, eta).unpolarised();
-    ((fresnel::dielectric(v, eta).unpolarised() - f0) / (1.0 - f0)).max(0.0)
+/// The channel of a batch by its weight at every node.
+fn weighed(g: Functional, values: &[f64; BATCH], nodes: &Nodes) -> f64 {
+    let term = |i: usize| values[i] * (nodes.weight[i] * nodes.mu_i[i]) * g.at(nodes.cos_d[i]);
+    (0..nodes.len).map(term).sum()
 }
 
 /// Sums of a batch: of the contributions, and of the contributions times (1 - v)^5.
@@ -126,24 +86,26 @@ pub fn integrate(
         }
         return Ok(Estimate::exact(value));
     }
-    if functionals == [Functional::One]
-        && let Some(e) = model.reduced_albedo(view.mu, tolerance)
-    {
-        return finite(e, 1);
+    if let Some(e) = model.reduced(view.mu, functionals, tolerance) {
+        return finite(e, functionals.len());
     }
     let mut values = [0.0; BATCH];
     let mut add = |nodes: &Nodes, sums: &mut Sums| {
         model.eval_nodes(nodes, &mut values);
         let batch = Batch::new(&values, nodes);
         for (s, g) in sums.iter_mut().zip(functionals) {
-            *s += g.of(batch).unwrap_or_else(|| g.sum(&values, nodes));
+            *s += from_sums(*g, batch).unwrap_or_else(|| weighed(*g, &values, nodes));
         }
     };
     let channels = functionals.len();
-    let estimate = match model.chart() {
+    let crease = functionals.iter().find_map(|g| g.crease());
+    let estimate = match model.chart().map(|chart| chart.creased(crease)) {
         Some(chart) => ladder::integrate(&chart, view, channels, tolerance, &mut add),
         None => adaptive::integrate(view, channels, tolerance, &mut add),
     };
+    let own = model.own_error(view.mu);
+    let mut estimate = estimate;
+    estimate.error[..channels].iter_mut().for_each(|e| *e += own);
     finite(estimate, channels)
 }
 
@@ -154,20 +116,10 @@ fn sum(
     functionals: &[Functional],
     tolerance: f64,
 ) -> Result<Estimate, TexelError> {
-    let mut total = Estimate { value: [0.0; MAX_CHANNELS], error: [0.0; MAX_CHANNELS], evaluations: 0 };
+    let mut total = Estimate::ZERO;
     let share = tolerance / parts.len().max(1) as f64;
-    for &(weight, part) in parts {
-        if weight <= 0.0 {
-            continue;
-        }
-        let e = integrate(part, view, functionals, share / weight)?;
-        for (t, v) in total.value.iter_mut().zip(&e.value) {
-            *t += weight * v;
-        }
-        for (t, v) in total.error.iter_mut().zip(&e.error) {
-            *t += weight * v;
-        }
-        total.evaluations = total.evaluations.saturating_add(e.evaluations);
+    for &(weight, part) in parts.iter().filter(|(weight, _)| *weight > 0.0) {
+        total.add(weight, &integrate(part, view, functionals, share / weight)?);
     }
     finite(total, functionals.len())
 }

@@ -10,7 +10,7 @@ use crate::grid::provenance::{Residual, Spread};
 use crate::grid::table::{Extreme, Table};
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::slab::{Medium, Slab};
-use crate::integrate::{Estimate, MAX_CHANNELS, gauss};
+use crate::integrate::{Estimate, MAX_CHANNELS, Trust, gauss};
 use crate::models::{Param, ParamError, Preset};
 use crate::terms::sggx;
 use glam::DVec3;
@@ -159,7 +159,8 @@ impl Baker for Sheen {
             for (i, id) in self.channels.iter().enumerate() {
                 let of = |f: &Found| channel(id, f);
                 e.value[i] = of(last);
-                e.error[i] = error(of(first), of(second), of(last));
+                e.error[i] =
+                    TRUST.error(level, (of(first) - of(second)).abs(), (of(second) - of(last)).abs());
             }
             if e.largest_error() <= tolerance {
                 break;
@@ -190,9 +191,7 @@ impl Baker for Sheen {
 ///
 /// Differences fall by 3 to 20 from level to level, so the last one is a bound; that before guards against chance. Measured in
 /// `tests/sheen.rs`.
-fn error(first: f64, second: f64, last: f64) -> f64 {
-    (0.25 * (first - second).abs()).max((second - last).abs())
-}
+const TRUST: Trust = Trust { gain: &[1.0], memory: 0.25 };
 
 /// Value of a channel.
 fn channel(id: &str, found: &Found) -> f64 {

@@ -3,17 +3,21 @@
 //! The light and the sensitivity of the eye are smooth but for kinks at known wavelengths, and the reflectances of thin
 //! films wave: between two kinks Gauss rules of rising order, all made once, until two of them agree.
 
-use crate::integrate::{Estimate, MAX_CHANNELS, gauss};
+use crate::integrate::stop::{Trust, climb_sure};
+use crate::integrate::{Estimate, gauss};
 use crate::terms::blackbody::{WYMAN_BREAKS, wyman_xyz, xyz_to_srgb};
 use crate::terms::metals;
 use std::sync::OnceLock;
 
 /// The rule in words, for metadata.
 pub const RULE: &str =
-    "Gauss-Legendre between the kinks of light and eye, 360 to 830 nm, orders raised until two agree";
+    "Gauss-Legendre between the kinks of light and eye, 360 to 830 nm, orders raised until three agree";
 
 /// Orders between two kinks.
 const ORDERS: [usize; 10] = [1, 2, 3, 5, 8, 13, 21, 34, 55, 89];
+
+/// Trust in them.
+const TRUST: Trust = Trust { gain: &[0.5], memory: 0.1 };
 
 /// A wavelength in nm, and what unit reflectance there adds to red, green and blue.
 type Node = (f64, [f64; 3]);
@@ -84,30 +88,13 @@ impl Spectrum {
 
     /// Red, green and blue of a spectrum, each to `tolerance` (absolute), in the first three channels.
     ///
-    /// The error is twice the difference of the last two orders, with a part of that of the other channels, so that one
-    /// that agrees by chance does not pass.
+    /// The rounding of a spectrum is taken to be 1e-14 of unit light.
     pub fn colour(&self, tolerance: f64, f: &mut dyn FnMut(f64) -> f64) -> Estimate {
-        let mut e =
-            Estimate { value: [0.0; MAX_CHANNELS], error: [f64::INFINITY; MAX_CHANNELS], evaluations: 0 };
-        let mut before = sums(&self.levels[0], f);
-        let mut count = self.levels[0].len();
-        for level in &self.levels[1..] {
-            let now = sums(level, f);
-            count += level.len();
-            let apart = [0, 1, 2].map(|c| (now[c] - before[c]).abs());
-            let shared = 0.2 * apart.iter().sum::<f64>();
-            for c in 0..3 {
-                e.error[c] = 2.0 * apart[c] + shared + 1e-14 * (1.0 + now[c].abs());
-                e.value[c] = now[c];
-            }
-            before = now;
-            if e.error[..3].iter().all(|e| *e <= tolerance) {
-                break;
-            }
-        }
-        e.error[3..].fill(0.0);
-        e.evaluations = u32::try_from(count).unwrap_or(u32::MAX);
-        e
+        climb_sure(TRUST, 0..self.levels.len(), 3, tolerance, |j, level| {
+            level.count(self.levels[j].len());
+            level.panel(0)[..3].copy_from_slice(&sums(&self.levels[j], f));
+            level.inner[..3].fill(1e-14);
+        })
     }
 }
 

@@ -1,8 +1,8 @@
 //! The shared body of diffuse models: drawn by the cosine, integrated by a chart or in closed form.
 
-use crate::integrate::{Chart, Estimate, MAX_CHANNELS};
+use crate::integrate::{Chart, Estimate};
 use crate::math::{frame, special};
-use crate::models::{Brdf, Sample};
+use crate::models::{Brdf, Functional, Sample};
 use glam::{DVec2, DVec3};
 use std::f64::consts::FRAC_1_PI;
 use std::fmt::Debug;
@@ -15,6 +15,16 @@ pub trait Reflector: Debug + Send + Sync {
     /// Directional albedo in closed form, if there is one; also at `mu_o` = 0.
     fn albedo(&self, _mu_o: f64) -> Option<f64> {
         None
+    }
+
+    /// Directional albedo by a rule that is better than the chart, if there is one.
+    fn reduced(&self, _mu_o: f64, _tolerance: f64) -> Option<Estimate> {
+        None
+    }
+
+    /// As [`Brdf::own_error`].
+    fn own_error(&self, _mu_o: f64) -> f64 {
+        0.0
     }
 
     /// Where the lobe is not smooth.
@@ -42,10 +52,16 @@ impl<R: Reflector> Brdf for Diffuse<R> {
         self.0.chart()
     }
 
-    fn reduced_albedo(&self, mu_o: f64, _tolerance: f64) -> Option<Estimate> {
-        let mut value = [0.0; MAX_CHANNELS];
-        value[0] = self.0.albedo(mu_o)?;
-        Some(Estimate::exact(value))
+    fn reduced(&self, mu_o: f64, functionals: &[Functional], tolerance: f64) -> Option<Estimate> {
+        let [Functional::One] = functionals else { return None };
+        let Some(albedo) = self.0.albedo(mu_o) else { return self.0.reduced(mu_o, tolerance) };
+        let mut e = Estimate::exact_one(albedo);
+        e.error[0] += self.0.own_error(mu_o);
+        Some(e)
+    }
+
+    fn own_error(&self, mu_o: f64) -> f64 {
+        self.0.own_error(mu_o)
     }
 }
 

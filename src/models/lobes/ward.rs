@@ -1,6 +1,6 @@
 //! Ward's lobe in its four normalisations: a Gaussian of the half vector.
 
-use crate::integrate::{BATCH, Chart, Edge, Nodes};
+use crate::integrate::{BATCH, Chart, Edge, FacetLobe, Nodes};
 use crate::math::{frame, special};
 use crate::models::{Brdf, Sample};
 use glam::{DVec2, DVec3};
@@ -129,7 +129,7 @@ impl Brdf for Ward {
             }
             _ => 6.6,
         };
-        Some(Chart::Ellipse { alpha: self.alpha, reach, edge })
+        Some(Chart::Ellipse(FacetLobe { edge, ..FacetLobe::smith(self.alpha, reach) }))
     }
 
     fn turns(&self) -> bool {

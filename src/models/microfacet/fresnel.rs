@@ -1,6 +1,6 @@
 //! The Fresnel factor of a microfacet model.
 
-use crate::integrate::{BATCH, Nodes};
+use crate::integrate::{BATCH, Crease, Nodes};
 use crate::terms::{fresnel, schlick};
 
 /// Which Fresnel factor.
@@ -27,6 +27,9 @@ pub enum Fresnel {
     },
 }
 
+/// A branch point farther than this from the real cosines leaves F smooth for the rules.
+const FELT: f64 = 0.2;
+
 impl Fresnel {
     /// F at `v = wo . wh`.
     #[must_use]
@@ -45,6 +48,25 @@ impl Fresnel {
             Fresnel::Schlick { f0, f90 } if (f0 - f90).abs() == 0.0 => Some(f0),
             _ => None,
         }
+    }
+
+    /// Where F has the branch point of its square root near the directions that are integrated over.
+    ///
+    /// `sqrt(N^2 - 1 + v^2)` vanishes at `v^2 = 1 - N^2`: for a dielectric seen from the denser side at the cosine of the
+    /// critical angle, for a conductor with n < 1 and a small k at a complex v near it.
+    #[must_use]
+    pub fn crease(&self) -> Option<Crease> {
+        let (n, k) = match *self {
+            Fresnel::Schlick { .. } => return None,
+            Fresnel::Dielectric { eta } => (eta, 0.0),
+            Fresnel::Conductor { eta, k } => (eta, k),
+        };
+        // v^2 = x - i y, v = p - i q
+        let (x, y) = ((1.0 - n) * (1.0 + n) + k * k, 2.0 * n * k);
+        let length = libm::hypot(x, y);
+        let at = (0.5 * (length + x)).max(0.0).sqrt();
+        let width = if at > 0.0 { 0.5 * y / at } else { f64::INFINITY };
+        (at > 0.0 && at < 1.0 + FELT && width < FELT).then_some(Crease { at: at.min(1.0), width })
     }
 
     /// Multiplies a batch by F.

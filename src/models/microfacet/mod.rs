@@ -14,8 +14,8 @@ pub use crate::terms::ggx::Ggx;
 pub use crate::terms::student_t::StudentT;
 pub use fresnel::Fresnel;
 
-use super::{Brdf, Param, ParamError, Params, Preset, Sample};
-use crate::integrate::{BATCH, Chart, Edge, Estimate, Nodes};
+use super::{Brdf, Functional, Param, ParamError, Params, Preset, Sample};
+use crate::integrate::{BATCH, Chart, Estimate, FacetLobe, Nodes};
 use crate::math::frame;
 use crate::terms::smith::Ndf;
 use glam::{DVec2, DVec3};
@@ -46,9 +46,19 @@ pub trait Distribution: Ndf {
         f64::INFINITY
     }
 
+    /// What its chart knows of it.
+    fn facets(&self) -> FacetLobe {
+        FacetLobe::smith(self.widths(), self.reach())
+    }
+
     /// `D V` at a batch of nodes.
     fn dv_nodes(&self, nodes: &Nodes, masking: Masking, out: &mut [f64; BATCH]) {
         default_dv_nodes(self, nodes, masking, out);
+    }
+
+    /// Part of the facets that the chart leaves out at a view cosine, because they are steeper than its finest scale.
+    fn left_out(&self, _mu_o: f64) -> f64 {
+        0.0
     }
 
     /// White directional albedo by a one-dimensional reduction, if there is one.
@@ -113,11 +123,7 @@ impl<D: Distribution> Brdf for Microfacet<D> {
     }
 
     fn chart(&self) -> Option<Chart> {
-        let reach = self.distribution.reach();
-        Some(match self.distribution.alpha() {
-            Some(alpha) => Chart::HalfVector { alpha, reach, kinks: false },
-            None => Chart::Ellipse { alpha: self.distribution.widths(), reach, edge: Edge::Layer },
-        })
+        Some(Chart::facets(FacetLobe { crease: self.fresnel.crease(), ..self.distribution.facets() }))
     }
 
     fn turns(&self) -> bool {
@@ -133,7 +139,12 @@ impl<D: Distribution> Brdf for Microfacet<D> {
         self.flat.then(|| self.fresnel.at(mu_o))
     }
 
-    fn reduced_albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
+    fn own_error(&self, mu_o: f64) -> f64 {
+        self.distribution.left_out(mu_o)
+    }
+
+    fn reduced(&self, mu_o: f64, functionals: &[Functional], tolerance: f64) -> Option<Estimate> {
+        let [Functional::One] = functionals else { return None };
         let constant = self.fresnel.constant()?;
         let mut e = self.distribution.reduced_albedo(mu_o, self.masking, tolerance)?;
         e.value[0] *= constant;

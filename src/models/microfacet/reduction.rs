@@ -14,17 +14,17 @@
 //! scale min(mu, a): three graded panels.
 
 use super::Masking;
+use crate::integrate::Estimate;
 use crate::integrate::graded::{Graded, Order};
-use crate::integrate::ladder::ROUNDING;
-use crate::integrate::{Estimate, MAX_CHANNELS};
+use crate::integrate::stop::{Level, Trust, climb_sure};
 
 const ORDER: Order = Order(1.0, 0.4);
 
-/// Share of the difference before last that is added to the last one. The error falls by ten or more per level.
-const REMEMBERED: f64 = 0.05;
+/// Views below this part of alpha see the limit of grazing views: E moves by about `mu / alpha ln(alpha / mu)`.
+const LIMIT: f64 = 1e-18;
 
-/// How much smaller than these differences the error is taken to be; a tenth was measured (`tests/honesty.rs`).
-const GAIN: f64 = 3.0;
+/// Trust in it.
+const TRUST: Trust = Trust { gain: &[3.0], memory: 0.05 };
 
 const LEVELS: [f64; 9] = [2.0, 2.8, 4.0, 5.6, 8.0, 11.2, 16.0, 22.4, 31.0];
 
@@ -33,34 +33,15 @@ pub(super) fn white_ggx(mu: f64, alpha: f64, masking: Masking, tolerance: f64) -
     if alpha <= 0.0 {
         return None;
     }
-    // three levels are summed at least
+    // E has left its limit at mu = 0 by less than rounding; below that squares would underflow
+    let mu = if mu < LIMIT * alpha.min(1.0) { 0.0 } else { mu };
     let first = match tolerance {
         t if t >= 1e-5 => 0,
         t if t >= 1e-9 => 1,
         _ => 2,
     };
-    let mut evaluations = 0;
     let integrand = Integrand::new(mu, alpha, masking);
-    let mut coarse = integrand.sums(LEVELS[first], &mut evaluations);
-    let mut error = f64::INFINITY;
-    let mut before: Option<f64> = None;
-    for &level in &LEVELS[first + 1..] {
-        let fine = integrand.sums(level, &mut evaluations);
-        // panel by panel, so that errors of opposite sign do not hide each other
-        let difference: f64 = fine.iter().zip(&coarse).map(|(f, c)| (f - c).abs()).sum();
-        // one difference may be small by chance; two in a row are not
-        error =
-            (difference + REMEMBERED * before.unwrap_or(0.0)) / GAIN + fine.iter().sum::<f64>() * ROUNDING;
-        coarse = fine;
-        if before.replace(difference).is_some() && error <= tolerance {
-            break;
-        }
-    }
-    let mut estimate = Estimate::exact([0.0; MAX_CHANNELS]);
-    estimate.value[0] = coarse.iter().sum();
-    estimate.error[0] = error;
-    estimate.evaluations = evaluations;
-    Some(estimate)
+    Some(climb_sure(TRUST, first..LEVELS.len(), 1, tolerance, |j, level| integrand.sums(LEVELS[j], level)))
 }
 
 struct Integrand {
@@ -77,21 +58,20 @@ impl Integrand {
         Integrand { mu, s: s2.sqrt(), a, root_o: (mu * mu + a * a * s2).sqrt(), masking }
     }
 
-    fn sums(&self, level: f64, evaluations: &mut u32) -> [f64; 3] {
+    fn sums(&self, level: f64, out: &mut Level) {
         let (mu, a) = (self.mu, self.a);
         let peak = a * self.s + a * a;
         let near_zero = if mu > 0.0 { mu.min(a) } else { a };
         let near_peak = if mu > 0.0 { peak.min(2.0 * mu) } else { peak };
         // (from, to, scale): graded towards `from`
         let panels = [(0.0, 0.5 * mu, near_zero), (mu, 0.5 * mu, near_peak), (mu, 1.0, near_peak)];
-        let mut sums = [0.0; 3];
-        for (sum, (from, to, scale)) in sums.iter_mut().zip(panels) {
+        for (panel, (from, to, scale)) in panels.into_iter().enumerate() {
             let length: f64 = to - from;
             if length.abs() <= 0.0 {
                 continue;
             }
             let rule = Graded::new((scale / length.abs()).min(1e3), ORDER, level);
-            *evaluations = evaluations.saturating_add(u32::try_from(rule.len).unwrap_or(u32::MAX));
+            out.count(rule.len);
             let mut part = 0.0;
             for (&x, &w) in rule.node[..rule.len].iter().zip(&rule.weight) {
                 // the distance to the peak is exact: it is the variable of the panel
@@ -99,9 +79,8 @@ impl Integrand {
                 let from_peak = if (from - mu).abs() <= 0.0 { step } else { from + step - mu };
                 part += w * self.at(from + step, from_peak);
             }
-            *sum = length.abs() * part;
+            out.panel(panel)[0] = length.abs() * part;
         }
-        sums
     }
 
     /// The integrand at `m`, `from_peak = m - mu`.

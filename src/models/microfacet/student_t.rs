@@ -2,9 +2,20 @@
 
 use super::{Distribution, StudentT};
 
+/// Finest scale of the chart at the horizon, in widths.
+const FINEST: f64 = 1e-9;
+
 impl Distribution for StudentT {
     fn widths(&self) -> [f64; 2] {
         [self.alpha_x(), self.alpha_y()]
+    }
+
+    /// A view in the horizon sees facets of all slopes by what they hide: beyond the slope x the part `x^(3 - 2 gamma)`, which
+    /// falls slowly as gamma nears 3/2. The chart sees slopes up to the inverse of its finest scale.
+    fn left_out(&self, mu_o: f64) -> f64 {
+        let decay = 2.0 * self.gamma() - 3.0;
+        let width = self.alpha_x().max(self.alpha_y());
+        if mu_o > FINEST * width || decay >= 1.0 { 0.0 } else { libm::pow(FINEST, decay) }
     }
 
     /// Where `(1 + X / (gamma - 1))^(-gamma)` is below 1e-19, X = tan^2 / alpha^2; infinite for a long tail.

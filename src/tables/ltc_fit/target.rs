@@ -55,7 +55,7 @@ impl<'a> Target<'a> {
     /// Appends the nodes of the chart of one part.
     fn gather(&mut self, own: usize) {
         let (parts, nodes) = (&self.parts, &mut self.nodes);
-        let chart = parts[own].1.chart().unwrap_or(Chart::Broad { kinks: true });
+        let chart = parts[own].1.chart().unwrap_or(Chart::Broad { kinks: true, floor: 0.0 });
         let (mut values, mut sum, mut cubes, mut mine) =
             ([0.0; BATCH], [0.0; BATCH], [0.0; BATCH], [0.0; BATCH]);
         chart.visit(self.view, self.level, &mut |batch| {
