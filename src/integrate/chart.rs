@@ -102,7 +102,7 @@ impl Chart {
         let (gain, memory): (&[f64], f64) = match self {
             Chart::Ellipse(facets) => return facets.trust(),
             Chart::HalfVector { kinks: true, .. } | Chart::Broad { kinks: true, .. } => (&[0.2], 0.2),
-            Chart::HalfVector { reach, .. } if reach.is_finite() => (&[0.6, 0.6, 2.0, 2.5], 0.1),
+            Chart::HalfVector { reach, .. } if reach.is_finite() => (&[0.6, 0.6, 1.5, 1.0], 0.1),
             Chart::HalfVector { .. } => (&[2.0, 2.0, 4.0, 6.0], 0.05),
             Chart::Lobe { .. } => (&[0.9, 0.9, 3.0, 6.0], 0.1),
             Chart::Fibre { .. } => (&[0.7], 0.05),

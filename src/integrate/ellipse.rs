@@ -122,15 +122,15 @@ impl FacetLobe {
         let upright = self.alpha[0] >= 1.0 && self.layer < 3.0 * self.alpha[0].min(self.alpha[1]);
         let (gain, memory): (&[f64], f64) = match self.edge {
             _ if self.fold => (&[0.6], 0.05),
-            _ if upright => (&[0.5, 0.5, 0.6, 0.7], 0.1),
+            _ if upright => (&[0.5, 0.5, 0.6, 0.5], 0.1),
             Edge::Root => (&[0.6, 0.6, 2.0, 3.0], 0.1),
             Edge::Smooth => (&[0.8, 0.8, 4.0, 6.0], 0.1),
-            Edge::Graze => (&[1.2, 1.2, 3.0, 5.0, 3.0, 0.8], 0.05),
+            Edge::Graze => (&[1.2, 1.2, 2.0, 4.0, 2.5, 0.7], 0.05),
             Edge::Layer => match (self.reach.is_finite(), self.crease.is_some()) {
                 (true, false) => (&[0.6, 0.6, 2.0, 3.0, 1.2], 0.1),
                 (true, true) => (&[0.6, 0.6, 1.2, 0.6], 0.1),
                 (false, false) => (&[0.6, 0.6, 0.5, 0.6], 0.03),
-                (false, true) => (&[1.0, 1.0, 0.4, 0.6, 0.5], 0.05),
+                (false, true) => (&[1.0, 1.0, 0.4, 0.5, 0.35], 0.05),
             },
         };
         Trust { gain, memory }

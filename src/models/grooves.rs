@@ -29,7 +29,7 @@ const GROWTH: f64 = 12.0;
 const TRUST: Trust = Trust { gain: &[2.0, 2.0, 2.5, 1.6, 1.3], memory: 0.1 };
 
 /// The same for facets on edge, whose masking is met at many heights.
-const TRUST_UPRIGHT: Trust = Trust { gain: &[2.0, 2.0, 0.35, 0.2, 0.4], memory: 0.1 };
+const TRUST_UPRIGHT: Trust = Trust { gain: &[2.0, 2.0, 0.16, 0.15, 0.3], memory: 0.1 };
 
 /// Grooves with their facets.
 pub(super) struct Grooves<'a> {

@@ -5,7 +5,7 @@ use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInf
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::Params;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
@@ -57,12 +57,20 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
 
 impl Baker for Table {
     fn texel(&self, at: &[f64], _tolerance: f64) -> Result<Estimate, TexelError> {
-        let cos = Phase::new(&self.params, self.g.map(|i| at[i])).sample(at[self.u]);
+        let phase = Phase::new(&self.params, self.g.map(|i| at[i]));
+        let cos = phase.sample(at[self.u]);
         let mut value = [0.0; MAX_CHANNELS];
         value[0] = if self.angle { libm::acos(cos) } else { cos };
         let mut e = Estimate::exact(value);
-        // roots are found to the rounding of the distribution; of the cosine, which near 0 or pi is more of the angle
-        let error = if self.params.choice("phase") == "fog" { 1e-12 } else { 1e-14 };
+        // roots are found to the rounding of the distribution, whose slope is 2 pi p; an error of the cosine is more of the
+        // angle near 0 or pi
+        let root = match self.params.choice("phase") {
+            "fog" => 1e-12,
+            "draine" => 1e-14,
+            _ => 0.0,
+        };
+        let slope = TAU * phase.at(libm::acos(cos));
+        let error = 4.0 * f64::EPSILON + (root / slope).min(2.0);
         e.error[0] = if self.angle { error / libm::sin(value[0]).max(1e-7) } else { error };
         super::finite(e, 1)
     }
