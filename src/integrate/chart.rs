@@ -99,15 +99,17 @@ impl Chart {
     /// How far the differences of its levels are to be trusted; see [`Trust`].
     #[must_use]
     pub fn trust(&self) -> Trust {
-        let (gain, memory): (&[f64], f64) = match self {
+        let (gain, memory): (&[f64], &[f64]) = match self {
             Chart::Ellipse(facets) => return facets.trust(),
-            Chart::HalfVector { kinks: true, .. } | Chart::Broad { kinks: true, .. } => (&[0.2], 0.2),
-            Chart::HalfVector { reach, .. } if reach.is_finite() => (&[0.6, 0.6, 1.5, 1.0], 0.1),
-            Chart::HalfVector { .. } => (&[2.0, 2.0, 4.0, 6.0], 0.05),
-            Chart::Lobe { .. } => (&[0.9, 0.9, 3.0, 6.0], 0.1),
-            Chart::Fibre { .. } => (&[0.7], 0.05),
-            Chart::Broad { .. } => (&[1.2, 1.2, 1.5, 1.2, 0.6, 0.8], 0.05),
-            Chart::Hemisphere | Chart::Folded | Chart::Horizon => (&[1.0], 0.1),
+            Chart::HalfVector { kinks: true, .. } | Chart::Broad { kinks: true, .. } => (&[0.2], &[0.2]),
+            Chart::HalfVector { reach, .. } if reach.is_finite() => {
+                (&[1.1, 1.1, 4.0, 2.0], &[0.2, 0.2, 0.03, 0.005, 0.002])
+            }
+            Chart::HalfVector { .. } => (&[2.5, 2.5, 7.0, 8.0], &[0.05, 0.05, 0.03, 0.003, 0.001]),
+            Chart::Lobe { .. } => (&[1.4, 1.4, 3.0, 6.0, 2.5], &[0.2, 0.2, 0.03, 0.02, 0.003]),
+            Chart::Fibre { .. } => (&[0.7, 0.7, 0.55], &[0.02]),
+            Chart::Broad { .. } => (&[1.5, 1.5, 3.0, 2.5, 0.7, 1.0, 0.6], &[0.03, 0.03, 0.1, 0.1, 0.01]),
+            Chart::Hemisphere | Chart::Folded | Chart::Horizon => (&[1.0], &[0.05, 0.05, 0.01, 0.002]),
         };
         Trust { gain, memory }
     }

@@ -8,7 +8,7 @@ use super::stop::Trust;
 use crate::math::root::solve;
 
 /// Trust in what the last two coefficients say of those left out: one may vanish by symmetry, so both count alike.
-const TRUST: Trust = Trust { gain: &[2.0], memory: 1.0 };
+const TRUST: Trust = Trust { gain: &[2.0], memory: &[1.0] };
 
 /// Coefficients of a panel.
 const ORDER: usize = 12;

@@ -1,7 +1,8 @@
 //! Quadrature rules and charts. This room knows directions and measures, but no BRDF.
 //!
 //! A [`Chart`] spreads nodes over the hemisphere of incident directions so that the peak, the horizon and the plane
-//! of incidence are coordinate lines; [`ladder`] raises its level until two levels agree to a tolerance. Where a model
+//! of incidence are coordinate lines, and so are the creases of a Fresnel factor ([`crease`]); [`ladder`] raises its level as the
+//! one stopping rule says ([`stop`]): three levels, and a trust that is measured for each chart. Where a model
 //! has no chart, [`adaptive`] subdivides the hemisphere instead.
 
 pub mod adaptive;

@@ -81,17 +81,19 @@ impl Estimate {
 pub struct Trust {
     /// How much smaller than the differences the error is, for the step to level `j`; the last entry holds for all later steps.
     pub gain: &'static [f64],
-    /// Share of the difference before last that counts as one of the last.
-    pub memory: f64,
+    /// Share of the difference before last that counts as one of the last, for the step to level `j` in the same way: coarse levels
+    /// agree by chance, fine ones have converged.
+    pub memory: &'static [f64],
 }
 
 impl Trust {
     /// The error left after two differences of levels, the last of which reached level `j`.
     #[must_use]
     pub fn error(&self, j: usize, before: f64, now: f64) -> f64 {
-        let gain = self.gain[j.clamp(1, self.gain.len()) - 1];
+        let at = |table: &[f64]| table[j.clamp(1, table.len()) - 1];
+        let gain = at(self.gain);
         // NaN must stay NaN: `max` would drop it
-        let remembered = self.memory * before;
+        let remembered = at(self.memory) * before;
         (if now >= remembered { now } else { remembered + 0.0 * now }) / gain
     }
 }

@@ -29,7 +29,7 @@ pub(super) const ACROSS: Param = Param::choice(
 const LEVELS: [f64; 9] = [2.0, 3.0, 4.5, 6.5, 9.0, 12.0, 16.0, 21.0, 27.0];
 
 /// Trust in it.
-const TRUST: Trust = Trust { gain: &[2.0], memory: 0.2 };
+const TRUST: Trust = Trust { gain: &[2.0], memory: &[0.2] };
 
 /// A rough dielectric interface.
 #[derive(Debug)]

@@ -26,10 +26,11 @@ const ORDERS: [usize; 8] = [4, 6, 9, 13, 18, 24, 32, 48];
 const GROWTH: f64 = 12.0;
 
 /// Trust in them.
-const TRUST: Trust = Trust { gain: &[2.0, 2.0, 2.5, 1.6, 1.3], memory: 0.1 };
+const TRUST: Trust = Trust { gain: &[2.4, 2.4, 1.9, 1.6, 1.4], memory: &[0.1, 0.1, 0.02, 0.01, 0.003] };
 
 /// The same for facets on edge, whose masking is met at many heights.
-const TRUST_UPRIGHT: Trust = Trust { gain: &[2.0, 2.0, 0.16, 0.15, 0.3], memory: 0.1 };
+const TRUST_UPRIGHT: Trust =
+    Trust { gain: &[2.4, 2.4, 0.3, 0.1, 0.3], memory: &[0.1, 0.1, 0.02, 0.01, 0.003] };
 
 /// Grooves with their facets.
 pub(super) struct Grooves<'a> {

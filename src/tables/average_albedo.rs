@@ -156,7 +156,7 @@ pub fn average_of(
 const LEVELS: [f64; 7] = [4.0, 6.0, 9.0, 13.0, 19.0, 27.0, 38.0];
 
 /// Trust in them.
-const TRUST: Trust = Trust { gain: &[1.0], memory: 0.1 };
+const TRUST: Trust = Trust { gain: &[1.0], memory: &[0.1] };
 
 /// View azimuths to average over: midpoints of equal parts of a quarter, since both tangents are lines of symmetry.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "levels are small and positive")]

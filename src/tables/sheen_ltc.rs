@@ -191,7 +191,7 @@ impl Baker for Sheen {
 ///
 /// Differences fall by 3 to 20 from level to level, so the last one is a bound; that before guards against chance. Measured in
 /// `tests/sheen.rs`.
-const TRUST: Trust = Trust { gain: &[1.0], memory: 0.25 };
+const TRUST: Trust = Trust { gain: &[1.0], memory: &[0.25] };
 
 /// Value of a channel.
 fn channel(id: &str, found: &Found) -> f64 {

@@ -1,7 +1,7 @@
 //! Integrals over the visible spectrum, to linear sRGB.
 //!
 //! The light and the sensitivity of the eye are smooth but for kinks at known wavelengths, and the reflectances of thin
-//! films wave: between two kinks Gauss rules of rising order, all made once, until two of them agree.
+//! films wave: between two kinks Gauss rules of rising order, all made once, until three of them agree.
 
 use crate::integrate::stop::{Trust, climb_sure};
 use crate::integrate::{Estimate, gauss};
@@ -17,7 +17,7 @@ pub const RULE: &str =
 const ORDERS: [usize; 10] = [1, 2, 3, 5, 8, 13, 21, 34, 55, 89];
 
 /// Trust in them.
-const TRUST: Trust = Trust { gain: &[0.5], memory: 0.1 };
+const TRUST: Trust = Trust { gain: &[0.5], memory: &[0.1] };
 
 /// A wavelength in nm, and what unit reflectance there adds to red, green and blue.
 type Node = (f64, [f64; 3]);

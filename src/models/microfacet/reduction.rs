@@ -24,7 +24,7 @@ const ORDER: Order = Order(1.0, 0.4);
 const LIMIT: f64 = 1e-18;
 
 /// Trust in it.
-const TRUST: Trust = Trust { gain: &[3.0], memory: 0.05 };
+const TRUST: Trust = Trust { gain: &[3.0], memory: &[0.05] };
 
 const LEVELS: [f64; 9] = [2.0, 2.8, 4.0, 5.6, 8.0, 11.2, 16.0, 22.4, 31.0];
 

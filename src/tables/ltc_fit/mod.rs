@@ -6,7 +6,7 @@
 //!
 //! The model is evaluated once a level at the nodes of its own [`Chart`](crate::integrate::Chart); the lobe below the horizon,
 //! where the model is 0, is integrated in the space of the cosine. The search is Newton's, from the moments of the target. Then the
-//! level is raised until the matrices of two levels agree. Nothing depends on neighbouring texels.
+//! level is raised until the matrices of three levels agree. Nothing depends on neighbouring texels.
 
 mod newton;
 mod objective;
@@ -105,7 +105,7 @@ pub struct FitError {
 const LEVELS: [f64; 9] = [4.0, 5.6, 8.0, 11.0, 15.0, 20.0, 27.0, 38.0, 54.0];
 
 /// Trust in them: the last two differences count alike, the last one twice.
-const TRUST: Trust = Trust { gain: &[0.5], memory: 0.5 };
+const TRUST: Trust = Trust { gain: &[0.5], memory: &[0.5] };
 
 /// Relative error below which Newton's method is needed in full at every level.
 const NEARLY_PERFECT: f64 = 1e-3;
