@@ -2,8 +2,9 @@
 //!
 //! Whoever starts a run makes a [`Cancel`], lends it to what is called, and sets it from another thread (a signal handler, a
 //! button). There is no global state: two runs in one process stop apart from each other. Loops look at the token between
-//! texels, points, rows or blocks and return [`Cancelled`]; functions that take it by name end in `_until`, and the same
-//! name without that never stops.
+//! texels, points, rows or blocks. Most functions that take it then return [`Cancelled`]; those that come nearer step by step
+//! return what they have, and their caller looks at the token. Where there is `name_until`, `name` is the same without a
+//! token.
 //!
 //! ```
 //! use brdfbake::cancel::{Cancel, Cancelled};
@@ -14,25 +15,41 @@
 //! assert_eq!(cancel.check(), Err(Cancelled));
 //! ```
 
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Tells work to stop.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub struct Cancel {
     set: AtomicBool,
     holds: AtomicUsize,
+    /// What is to be undone, by number, if the process is ended in the midst of the work.
+    undo: Mutex<Vec<(usize, Undo)>>,
+    numbers: AtomicUsize,
 }
+
+type Undo = Box<dyn FnOnce() + Send>;
 
 /// The work was stopped from outside; what it had so far is gone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("interrupted")]
 pub struct Cancelled;
 
+impl std::fmt::Debug for Cancel {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Cancel")
+            .field("set", &self.is_set())
+            .field("held", &self.is_held())
+            .finish_non_exhaustive()
+    }
+}
+
 impl Cancel {
     /// A token that is not set.
     #[must_use]
     pub const fn new() -> Cancel {
-        Cancel { set: AtomicBool::new(false), holds: AtomicUsize::new(0) }
+        let (set, holds, numbers) = (AtomicBool::new(false), AtomicUsize::new(0), AtomicUsize::new(0));
+        Cancel { set, holds, undo: Mutex::new(Vec::new()), numbers }
     }
 
     /// Asks to stop. It cannot be taken back.
@@ -67,6 +84,26 @@ impl Cancel {
     pub fn is_held(&self) -> bool {
         self.holds.load(Ordering::SeqCst) > 0
     }
+
+    /// Leaves word of what is to be undone if the process is ended in the midst of the work, where nothing is dropped:
+    /// temporary folders are to be removed. Until the result is dropped.
+    #[must_use = "the word is forgotten when it is dropped"]
+    pub fn at_end(&self, undo: impl FnOnce() + Send + 'static) -> AtEnd<'_> {
+        let number = self.numbers.fetch_add(1, Ordering::Relaxed);
+        self.words(|all| all.push((number, Box::new(undo))));
+        AtEnd { cancel: self, number }
+    }
+
+    /// Undoes what word was left of, the last first. For a caller that then ends the process.
+    pub fn end(&self) {
+        let mut all = Vec::new();
+        self.words(|words| all.append(words));
+        all.into_iter().rev().for_each(|(_, undo)| undo());
+    }
+
+    fn words(&self, f: impl FnOnce(&mut Vec<(usize, Undo)>)) {
+        f(&mut self.undo.lock().unwrap_or_else(std::sync::PoisonError::into_inner));
+    }
 }
 
 /// As long as it lives the process is not to be ended; see [`Cancel::hold`].
@@ -76,5 +113,18 @@ pub struct Hold<'a>(&'a Cancel);
 impl Drop for Hold<'_> {
     fn drop(&mut self) {
         self.0.holds.fetch_sub(1, Ordering::SeqCst);
+    }
+}
+
+/// As long as it lives something is to be undone if the process is ended; see [`Cancel::at_end`].
+#[derive(Debug)]
+pub struct AtEnd<'a> {
+    cancel: &'a Cancel,
+    number: usize,
+}
+
+impl Drop for AtEnd<'_> {
+    fn drop(&mut self) {
+        self.cancel.words(|all| all.retain(|(number, _)| *number != self.number));
     }
 }

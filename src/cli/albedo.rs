@@ -1,7 +1,9 @@
 //! `brdfbake albedo MODEL --param k=v --mu 0.1,0.5 --tolerance 1e-8`: E, and T of models that transmit.
 
 use super::{Exit, Failure, output};
+use crate::cancel::Cancel;
 use crate::integrate::View;
+use crate::math::figures::exact;
 use crate::models::{self, Params};
 use crate::tables::integral::{Functional, integrate};
 use serde_json::{Map, Value as Json};
@@ -35,12 +37,15 @@ pub struct Args {
 ///
 /// # Errors
 /// [`Failure`] for an unknown model, a bad parameter, or a model without an albedo.
-pub fn run(args: &Args) -> Result<Exit, Failure> {
+pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
     if !(args.tolerance > 0.0 && args.tolerance.is_finite()) {
-        return Err(Failure::usage(format!("--tolerance {} must be a positive number", args.tolerance)));
+        return Err(Failure::usage(format!(
+            "--tolerance {} must be a positive number",
+            exact(args.tolerance)
+        )));
     }
     if !args.phi.is_finite() {
-        return Err(Failure::usage(format!("--phi {} must be a number of radians", args.phi)));
+        return Err(Failure::usage(format!("--phi {} must be a number of radians", exact(args.phi))));
     }
     let given = parse_params(&args.params)?;
     let (info, model) = build(&args.model, &given)?;
@@ -51,16 +56,20 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         text.push_str(&format!("mu\tE\terror\tevaluations{through}\n"));
     }
     for &mu in &args.mu {
+        cancel.check()?;
         if !(0.0..=1.0).contains(&mu) {
             return Err(Failure::input(format!(
-                "mu = {mu} outside [0, 1]: it is the cosine of the view angle"
+                "mu = {} outside [0, 1]: it is the cosine of the view angle",
+                exact(mu)
             )));
         }
         // twice the same functional asks for the chart: reductions exist for a single one only
         let functionals: &[Functional] =
             if args.chart { &[Functional::One, Functional::One] } else { &[Functional::One] };
-        let e = integrate(&*model, View { mu, phi: args.phi }, functionals, args.tolerance)
-            .map_err(|e| Failure::new(Exit::Unsupported, format!("{}: mu = {mu}: {e}", info.id)))?;
+        let e = integrate(&*model, View { mu, phi: args.phi }, functionals, args.tolerance).map_err(|e| {
+            let why = e.of(["E"].into_iter());
+            Failure::new(Exit::of_texel(&e), format!("{}: mu = {}: {why}", info.id, exact(mu)))
+        })?;
         let through = model.transmission().and_then(|t| t.albedo(mu, args.tolerance));
         let through = through.map(|t| (t.value[0], t.error[0]));
         missed |= e.error[0] > args.tolerance || through.is_some_and(|t| t.1 > args.tolerance);
@@ -74,14 +83,18 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
             }
             text.push_str(&format!("{line}\n"));
         } else {
-            let through = through.map_or_else(String::new, |(t, error)| format!("\t{t:.15}\t{error:.1e}"));
+            let through =
+                through.map_or_else(String::new, |(t, error)| format!("\t{}\t{error:.1e}", exact(t)));
             text.push_str(&format!(
-                "{mu}\t{:.15}\t{:.1e}\t{}{through}\n",
-                e.value[0], e.error[0], e.evaluations
+                "{}\t{}\t{:.1e}\t{}{through}\n",
+                exact(mu),
+                exact(e.value[0]),
+                e.error[0],
+                e.evaluations
             ));
         }
     }
-    output::data(&text);
+    output::data(&text)?;
     if missed {
         return Err(Failure::new(
             Exit::Failed,
@@ -100,8 +113,11 @@ pub(super) fn parse_params(params: &[String]) -> Result<Map<String, Json>, Failu
         })?;
         let list = || serde_json::from_str(value).ok().filter(Json::is_array);
         let word = || list().unwrap_or_else(|| Json::from(value));
-        let json = value.parse::<f64>().map_or_else(|_| word(), Json::from);
-        map.insert(key.to_owned(), json);
+        // JSON has no name for what is not finite: it stays a word, which no number takes
+        let number = value.parse::<f64>().ok().filter(|v| v.is_finite());
+        if map.insert(key.to_owned(), number.map_or_else(word, Json::from)).is_some() {
+            return Err(Failure::input(format!("--param {param}: `{key}` is given twice; leave one out")));
+        }
     }
     Ok(map)
 }
@@ -113,8 +129,7 @@ pub(super) fn build(
 ) -> Result<(&'static models::ModelInfo, Box<dyn models::Brdf>), Failure> {
     let (info, implied) = models::find(name).ok_or_else(|| unknown_model(name))?;
     let implied = models::implied_values(implied);
-    let all = implied.iter().chain(given).map(|(k, v)| (k.as_str(), v));
-    let params = Params::resolve(info.id, info.params, all).map_err(Failure::input)?;
+    let params = Params::resolve_over(info.id, info.params, &implied, given).map_err(Failure::input)?;
     Ok((info, (info.build)(&params).map_err(Failure::input)?))
 }
 

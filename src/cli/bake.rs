@@ -71,11 +71,13 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     let settings = args.limits.settings(&args.out);
     if args.dry_run {
         pipeline::check(&plan, &settings)?;
-        output::data(&pipeline::outputs(&plan).join("\n"));
+        output::data(&pipeline::outputs(&plan).join("\n"))?;
         return Ok(Exit::Done);
     }
-    let reporter = progress::reporter(args.message_format, args.quiet);
-    match pipeline::run(&plan, &settings, cancel, &*reporter) {
+    let reporter = progress::reporter(args.message_format, args.quiet, cancel);
+    let done = pipeline::run(&plan, &settings, cancel, reporter.progress());
+    reporter.finish()?;
+    match done {
         Ok(outcome) => {
             let talks = !args.quiet && args.message_format == Format::Human;
             if let Some(engine) = engine.filter(|_| talks) {
@@ -86,7 +88,7 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         Err(error) => {
             if let (PipelineError::Laws(findings), Format::Json) = (&error, args.message_format) {
                 for finding in findings {
-                    report_finding(finding);
+                    report_finding(finding)?;
                 }
             }
             Err(error.into())
@@ -94,13 +96,12 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     }
 }
 
-fn report_finding(finding: &crate::verify::Finding) {
-    if let Ok(serde_json::Value::Object(fields)) = serde_json::to_value(finding) {
-        let mut line = serde_json::Map::new();
-        line.insert("reason".to_owned(), "finding".into());
-        line.extend(fields);
-        output::data(&serde_json::Value::Object(line).to_string());
-    }
+fn report_finding(finding: &crate::verify::Finding) -> Result<(), Failure> {
+    let fields = serde_json::to_value(finding).map_err(|e| Failure::new(Exit::Internal, e))?;
+    let mut line = serde_json::Map::new();
+    line.insert("reason".to_owned(), "finding".into());
+    line.extend(fields.as_object().cloned().unwrap_or_default());
+    output::data(&serde_json::Value::Object(line).to_string()).map(|_| ())
 }
 
 /// The plan of a recipe file or of a preset.

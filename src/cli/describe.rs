@@ -5,6 +5,7 @@ use super::{Exit, Failure, engine, output};
 use crate::encode::{self, Encoder};
 use crate::functions::{self, FunctionInfo};
 use crate::grid::Quantity;
+use crate::math::figures::exact;
 use crate::models::{self, Kind, ModelInfo, Param, Preset};
 use crate::recipe::{self, ENGINES, PRESETS};
 use crate::tables::{self, ModelUse, TableInfo};
@@ -54,7 +55,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
             "nothing is called `{id}`{hint}; `brdfbake list models` and `list functions` list what there is"
         )));
     }
-    output::data(&parts.join("\n"));
+    output::data(&parts.join("\n"))?;
     Ok(Exit::Done)
 }
 
@@ -98,8 +99,7 @@ pub fn function(f: &FunctionInfo) -> String {
     let inputs =
         if inputs.is_empty() { "none; the columns may be blank".to_owned() } else { inputs.join("; ") };
     text.push_str(&format!("angles: {inputs}\n"));
-    let bound = |v: f64| if v.abs() < f64::MAX { v.to_string() } else { "infinity".to_owned() };
-    text.push_str(&format!("value: in [{}, {}], unit {}\n", bound(f.range[0]), bound(f.range[1]), f.unit));
+    text.push_str(&format!("value: in {}, unit {}\n", interval(f.range), f.unit));
     text.push_str(&format!("notes: {}\n", f.notes));
     if !f.also.is_empty() {
         let names: Vec<&str> = f.also.iter().map(|a| a.name).collect();
@@ -117,13 +117,13 @@ pub fn table(t: &TableInfo) -> String {
     for layout in t.layouts {
         text.push_str(&format!("  {}: {}\n", layout.id, layout.doc));
         for c in layout.channels {
-            text.push_str(&format!("    {} in [{}, {}]: {}\n", c.id, c.range[0], c.range[1], c.meaning));
+            text.push_str(&format!("    {} in {}: {}\n", c.id, interval(c.range), c.meaning));
         }
     }
     if !t.mix.extra().is_empty() {
         text.push_str("more channels, to be named in `channels = [..]` with those above:\n");
         for c in t.mix.extra() {
-            text.push_str(&format!("  {} in [{}, {}]: {}\n", c.id, c.range[0], c.range[1], c.meaning));
+            text.push_str(&format!("  {} in {}: {}\n", c.id, interval(c.range), c.meaning));
         }
     }
     text.push_str(&match t.model {
@@ -140,10 +140,9 @@ pub fn table(t: &TableInfo) -> String {
     text.push_str("default axes:\n");
     for axis in (t.axes)() {
         text.push_str(&format!(
-            "  {} in [{}, {}], {} texels, {:?}, texture coordinate {}\n",
+            "  {} in {}, {} texels, {:?}, texture coordinate {}\n",
             axis.quantity.id,
-            axis.domain[0],
-            axis.domain[1],
+            interval(axis.domain),
             axis.len,
             axis.texel,
             axis.coordinate_formula()
@@ -168,11 +167,11 @@ fn format(e: &'static dyn Encoder) -> String {
     );
     for s in e.storages() {
         let limit = s.most_channels().map_or_else(String::new, |n| format!("at most {n} channels, "));
-        let tolerance = s.default_tolerance();
         text.push_str(&format!(
-            "  {}:{} ({limit}default tolerance {tolerance:e}): {}\n",
+            "  {}:{} ({limit}default tolerance {}): {}\n",
             e.id(),
             s.id(),
+            exact(s.default_tolerance()),
             s.meaning()
         ));
     }
@@ -188,9 +187,23 @@ fn format(e: &'static dyn Encoder) -> String {
 fn quantity(q: &'static Quantity) -> String {
     let base = q.base.as_ref().map_or_else(String::new, |b| format!("\n{}", b.formula));
     format!(
-        "quantity {}, symbol {}, unit {}\n{}; domain [{}, {}]{base}\n",
-        q.id, q.symbol, q.unit, q.meaning, q.domain[0], q.domain[1]
+        "quantity {}, symbol {}, unit {}\n{}; domain {}{base}\n",
+        q.id,
+        q.symbol,
+        q.unit,
+        q.meaning,
+        interval(q.domain)
     )
+}
+
+/// `[0, infinity]`: the largest number of f64 stands for no bound.
+fn interval(range: [f64; 2]) -> String {
+    let end = |v: f64| match v {
+        _ if v.abs() < f64::MAX => exact(v),
+        _ if v < 0.0 => "-infinity".to_owned(),
+        _ => "infinity".to_owned(),
+    };
+    format!("[{}, {}]", end(range[0]), end(range[1]))
 }
 
 fn params(params: &[Param]) -> String {
@@ -202,15 +215,15 @@ fn params(params: &[Param]) -> String {
         let range = match p.kind {
             Kind::Number { min, max, preset } => {
                 let default = match preset {
-                    Preset::Value(v) => v.to_string(),
+                    Preset::Value(v) => exact(v),
                     Preset::Of(id) => id.to_owned(),
                 };
-                format!("[{min}, {max}], default {default}")
+                format!("{}, default {default}", interval([min, max]))
             }
             Kind::Choice(words) => format!("{}; default {}", words.join(" | "), words.first().unwrap_or(&"")),
             Kind::Rows { columns, preset } => {
                 let columns: Vec<String> =
-                    columns.iter().map(|c| format!("{} in [{}, {}]", c.id, c.min, c.max)).collect();
+                    columns.iter().map(|c| format!("{} in {}", c.id, interval([c.min, c.max]))).collect();
                 format!("list of rows ({}), default {preset:?}", columns.join(", "))
             }
         };
@@ -223,7 +236,7 @@ fn known(values: &[models::Known]) -> String {
     let mut text = "known values:\n".to_owned();
     for k in values {
         let set: Vec<String> = k.params.iter().map(|(a, b)| format!("{a} = {b}")).collect();
-        text.push_str(&format!("  {:?} at {}: {:.15} ({})\n", k.what, set.join(", "), k.value, k.source));
+        text.push_str(&format!("  {:?} at {}: {} ({})\n", k.what, set.join(", "), exact(k.value), k.source));
     }
     text
 }

@@ -4,6 +4,7 @@ use super::{Exit, Failure, output};
 use crate::encode::ReadError;
 use crate::encode::diff::Tolerance;
 use crate::encode::diff_files::{self, DiffError};
+use crate::math::figures::exact;
 use crate::report;
 use std::path::PathBuf;
 
@@ -36,7 +37,8 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if !(args.tolerance >= 0.0 && args.ulps >= 0.0) {
         return Err(Failure::usage(format!(
             "--tolerance {} and --ulps {} must not be negative",
-            args.tolerance, args.ulps
+            exact(args.tolerance),
+            exact(args.ulps)
         )));
     }
     let tolerance = Tolerance { absolute: args.tolerance, ulps: args.ulps };
@@ -44,7 +46,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if !args.quiet {
         let (a, b) = (args.a.display().to_string(), args.b.display().to_string());
         let json = || serde_json::to_string(&diff).unwrap_or_default();
-        output::data(&if args.json { json() } else { report::diff(&a, &b, &diff) });
+        output::data(&if args.json { json() } else { report::diff(&a, &b, &diff) })?;
     }
     Ok(if diff.equal() { Exit::Done } else { Exit::Failed })
 }

@@ -1,7 +1,12 @@
 //! Exit codes, in one table.
 
+use crate::cancel::Cancelled;
+use crate::encode::EncodeError;
+use crate::encode::atomic::WriteError;
 use crate::pipeline::PipelineError;
 use crate::pipeline::transaction::TransactionError;
+use crate::report::analytic::FitError;
+use crate::tables::TexelError;
 use crate::tables::driver::BakeError;
 
 /// The table of exit codes, for `--help` and README.
@@ -34,6 +39,24 @@ pub enum Exit {
     Unsupported = 6,
     /// Interrupted by the user.
     Interrupted = 130,
+}
+
+impl Exit {
+    /// What a container that does not take a table means: the recipe asks for what cannot be, as is told when it is read.
+    #[must_use]
+    pub fn of_encode(error: &EncodeError) -> Exit {
+        if matches!(error, EncodeError::Library { .. }) { Exit::Internal } else { Exit::Input }
+    }
+
+    /// What a texel without a value means, in whatever verb: a delta or an integral without a rule is not supported;
+    /// parameters without a value are those of the input.
+    #[must_use]
+    pub fn of_texel(error: &TexelError) -> Exit {
+        match error {
+            TexelError::NoWidth | TexelError::NoRule { .. } => Exit::Unsupported,
+            _ => Exit::Input,
+        }
+    }
 }
 
 impl From<Exit> for std::process::ExitCode {
@@ -73,6 +96,34 @@ impl Failure {
     }
 }
 
+impl From<Cancelled> for Failure {
+    fn from(_: Cancelled) -> Failure {
+        Failure::new(Exit::Interrupted, "interrupted")
+    }
+}
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Failure {
+        match error {
+            WriteError::Cancelled => Failure::from(Cancelled),
+            _ => Failure::new(Exit::Io, error),
+        }
+    }
+}
+
+impl From<FitError> for Failure {
+    fn from(error: FitError) -> Failure {
+        let exit = match &error {
+            FitError::Cancelled(_) => Exit::Interrupted,
+            FitError::Axis(error) => Exit::of_encode(error),
+            FitError::Texel { error, .. } => Exit::of_texel(error),
+            FitError::Table { .. } => Exit::Input,
+            _ => Exit::Failed,
+        };
+        Failure::new(exit, error)
+    }
+}
+
 impl From<PipelineError> for Failure {
     fn from(error: PipelineError) -> Failure {
         let exit = match &error {
@@ -83,12 +134,17 @@ impl From<PipelineError> for Failure {
             | PipelineError::Size { .. }
             | PipelineError::Laws(_)
             | PipelineError::Range { .. } => Exit::Failed,
-            PipelineError::Bake { .. } | PipelineError::Files(TransactionError::Twice { .. }) => Exit::Input,
-            PipelineError::Encode { .. } | PipelineError::Fit { .. } => Exit::Unsupported,
+            PipelineError::Bake { error: BakeError::Texel { error, .. }, .. } => Exit::of_texel(error),
+            PipelineError::Files(TransactionError::Twice { .. }) => Exit::Input,
+            PipelineError::Encode { error, .. } => Exit::of_encode(error),
+            PipelineError::Fit { .. } | PipelineError::SizeGrid { .. } => Exit::Input,
             PipelineError::Jobs { .. } => Exit::Usage,
             PipelineError::Files(_) | PipelineError::Threads { .. } => Exit::Io,
             _ => Exit::Internal,
         };
+        if exit == Exit::Interrupted {
+            return Failure::new(exit, "interrupted; nothing was written");
+        }
         let mut message = error.to_string();
         if let PipelineError::Laws(findings) = &error {
             for finding in findings {

@@ -1,6 +1,8 @@
 //! `brdfbake fit`: a table as a formula, with its errors: the split sum of a model, or the channels of any table.
 
 use super::{Exit, Failure, albedo, bake, output};
+use crate::cancel::Cancel;
+use crate::math::figures::exact;
 use crate::report::analytic::{self, DEGREES, Fit, FitError, Form, Lang};
 use crate::tables::Bound;
 use crate::tables::spec::Request;
@@ -50,7 +52,7 @@ enum Domain {
 ///
 /// # Errors
 /// [`Failure`] for a bad model, recipe, table, parameter, degree or error, or if there is no fit.
-pub fn run(args: &Args) -> Result<Exit, Failure> {
+pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
     let bound = bound(args)?;
     let split = args.form.is_none() && analytic::splits(&bound);
     let form = args.form.unwrap_or(Form::Rational);
@@ -60,7 +62,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
             return Err(Failure::usage(format!("--degree {n} outside {least} to {most}")));
         }
         (_, Some(e)) if !(e > 0.0 && e.is_finite()) => {
-            return Err(Failure::usage(format!("--error {e} must be a positive number")));
+            return Err(Failure::usage(format!("--error {} must be a positive number", exact(e))));
         }
         (n, None) => n.unwrap_or(3)..=n.unwrap_or(3),
         (_, Some(_)) => least..=most,
@@ -71,13 +73,17 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         let message = format!(
             "a function of {lang} returns {most} numbers, this table has {results}; use --lang c or rust"
         );
-        return Err(Failure::new(Exit::Unsupported, message));
+        return Err(Failure::input(message));
     }
     let one = |degree| {
-        if split { analytic::split_sum(&bound, degree) } else { analytic::table(&bound, form, degree) }
+        if split {
+            analytic::split_sum_until(cancel, &bound, degree)
+        } else {
+            analytic::table_until(cancel, &bound, form, degree)
+        }
     };
     let fit = best(degrees, args, one)?;
-    output::data(&fit.code(args.lang));
+    output::data(&fit.code(args.lang))?;
     Ok(Exit::Done)
 }
 
@@ -99,9 +105,7 @@ fn best(
             }
             // another degree may do
             (Err(FitError::Pole { .. }), Some(_)) => {}
-            (Err(e @ FitError::Axis(_)), _) => return Err(Failure::new(Exit::Unsupported, e)),
-            (Err(e @ FitError::Table { .. }), _) => return Err(Failure::input(e)),
-            (Err(e), _) => return Err(Failure::new(Exit::Failed, e)),
+            (Err(e), _) => return Err(e.into()),
         }
     }
     let reached =

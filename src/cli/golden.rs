@@ -1,13 +1,14 @@
 //! `brdfbake golden check|bless DIR`: golden-image tests of a recipe.
 
+use super::interrupt::Scratch;
 use super::limits::Limits;
-use super::{Exit, Failure, bake, output, progress};
+use super::{Exit, Failure, bake, output};
 use crate::cancel::Cancel;
 use crate::encode::atomic;
 use crate::encode::diff_files::{FileDiff, FolderDiff, PathDiff};
 use crate::encode::read;
-use crate::pipeline;
 use crate::pipeline::golden::{Golden, GoldenError};
+use crate::pipeline::{self, Silent};
 use crate::recipe::Plan;
 use crate::report;
 use std::path::{Path, PathBuf};
@@ -47,9 +48,8 @@ pub enum What {
 pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     let golden = Golden::load(&args.folder).map_err(failure)?;
     let plan = plan(&golden, &args.folder)?;
-    let quiet = progress::reporter(progress::Format::Human, true);
     let bake =
-        |out: &Path| pipeline::run(&plan, &args.limits.settings(out), cancel, &*quiet).map_err(Failure::from);
+        |out: &Path| pipeline::run(&plan, &args.limits.settings(out), cancel, &Silent).map_err(Failure::from);
     if args.what == What::Bless {
         let done = bake(&args.folder)?;
         output::talk(&format!(
@@ -60,7 +60,7 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         ));
         return Ok(Exit::Done);
     }
-    let fresh = tempfile::tempdir().map_err(|e| Failure::io("temporary folder", &e))?;
+    let fresh = Scratch::new(cancel).map_err(|e| Failure::io("temporary folder", &e))?;
     bake(fresh.path())?;
     let diff = golden.compare(&args.folder, fresh.path()).map_err(failure)?;
     if let Some(target) = &args.draw {
@@ -73,7 +73,7 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     } else {
         report::diff(&args.folder.display().to_string(), "a fresh bake", &diff)
     };
-    output::data(&text);
+    output::data(&text)?;
     Ok(if equal { Exit::Done } else { Exit::Failed })
 }
 
@@ -104,7 +104,7 @@ fn draw(
     }
     if !files.is_empty() {
         std::fs::create_dir_all(target).map_err(|e| Failure::io(target.display(), &e))?;
-        atomic::write_all(&files, cancel).map_err(|e| Failure::new(Exit::Io, e))?;
+        atomic::write_all(&files, cancel)?;
     }
     for (path, _) in &files {
         output::talk(&format!("{}", path.display()));

@@ -25,9 +25,9 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         let image = read::read_file(path).map_err(|e| super::diff::read_failure(&e))?;
         let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
         if args.json {
-            output::data(&json(&name, &image));
+            output::data(&json(&name, &image))?;
         } else {
-            output::data(&report::inspect(&name, &image));
+            output::data(&report::inspect(&name, &image))?;
         }
     }
     Ok(Exit::Done)

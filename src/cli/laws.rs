@@ -1,8 +1,9 @@
 //! `brdfbake laws [MODEL]`: reciprocity and energy of models over their domain.
 
 use super::{Exit, Failure, albedo, output};
+use crate::cancel::{Cancel, Cancelled};
 use crate::models::{self, MODELS, ModelInfo};
-use crate::verify::survey::{Survey, Verdict, survey};
+use crate::verify::survey::{Survey, Verdict, survey_until};
 use rayon::prelude::*;
 
 /// Arguments of `laws`.
@@ -19,7 +20,7 @@ pub struct Args {
 ///
 /// # Errors
 /// [`Failure`] for an unknown model, or a defect.
-pub fn run(args: &Args) -> Result<Exit, Failure> {
+pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
     let mut chosen: Vec<&'static ModelInfo> = Vec::new();
     for name in &args.models {
         chosen.push(models::find(name).ok_or_else(|| albedo::unknown_model(name))?.0);
@@ -27,13 +28,15 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if chosen.is_empty() {
         chosen.extend(MODELS);
     }
-    let surveys: Vec<Survey> = chosen.par_iter().map(|m| survey(m)).collect();
+    let surveys: Result<Vec<Survey>, Cancelled> =
+        chosen.par_iter().map(|m| survey_until(cancel, m)).collect();
+    let surveys = surveys?;
     if args.json {
         let lines: Vec<String> =
             surveys.iter().map(|s| serde_json::to_string(s).unwrap_or_default()).collect();
-        output::data(&lines.join("\n"));
+        output::data(&lines.join("\n"))?;
     } else {
-        output::data(&table(&surveys));
+        output::data(&table(&surveys))?;
     }
     let defects: Vec<&str> =
         surveys.iter().filter(|s| s.verdict == Verdict::Defect).map(|s| s.model).collect();

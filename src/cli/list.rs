@@ -51,11 +51,11 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if args.json {
         let json: Vec<_> =
             rows.iter().map(|(id, text)| serde_json::json!({"id": id, "title": text})).collect();
-        output::data(&serde_json::Value::from(json).to_string());
+        output::data(&serde_json::Value::from(json).to_string())?;
     } else {
         let width = rows.iter().map(|(id, _)| id.len()).max().unwrap_or(0);
         let lines: Vec<String> = rows.iter().map(|(id, text)| format!("{id:width$}  {text}")).collect();
-        output::data(&lines.join("\n"));
+        output::data(&lines.join("\n"))?;
     }
     Ok(Exit::Done)
 }

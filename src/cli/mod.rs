@@ -10,6 +10,7 @@ pub mod exit;
 pub mod fit;
 pub mod golden;
 pub mod inspect;
+mod interrupt;
 pub mod laws;
 pub mod limits;
 pub mod list;
@@ -24,6 +25,7 @@ use crate::cancel::Cancel;
 use crate::pipeline::pool;
 use clap::{Parser, Subcommand};
 pub use exit::{Exit, Failure};
+use std::io::Write;
 use std::sync::Arc;
 
 /// Bakes BRDF lookup textures to a tolerance, and verifies them as it bakes.
@@ -73,11 +75,11 @@ pub fn run(cli: Cli, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         Verb::Diff(args) => diff::run(&args),
         Verb::Verify(args) => verify::run(&args),
         Verb::Golden(args) => golden::run(&args, cancel),
-        Verb::Eval(args) => eval::run(&args),
-        Verb::Albedo(args) => albedo::run(&args),
-        Verb::Laws(args) => pool(None)?.install(|| laws::run(&args)),
+        Verb::Eval(args) => eval::run(&args, cancel),
+        Verb::Albedo(args) => albedo::run(&args, cancel),
+        Verb::Laws(args) => pool(None)?.install(|| laws::run(&args, cancel)),
         Verb::Plot(args) => plot::run(&args, cancel),
-        Verb::Fit(args) => pool(None)?.install(|| fit::run(&args)),
+        Verb::Fit(args) => pool(None)?.install(|| fit::run(&args, cancel)),
         Verb::List(args) => list::run(&args),
         Verb::Describe(args) => describe::run(&args),
     }
@@ -86,17 +88,24 @@ pub fn run(cli: Cli, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
 /// The program: parse, run, print the failure, return the exit code.
 #[must_use]
 pub fn main() -> std::process::ExitCode {
-    let cli = Cli::parse();
     let cancel = Arc::new(Cancel::new());
-    let flag = Arc::clone(&cancel);
-    // A second interrupt while files are being moved changes nothing: the first one is honoured at the next texel.
-    let _ = ctrlc::set_handler(move || flag.set());
-    let exit = match run(cli, &cancel) {
-        Ok(exit) => exit,
-        Err(failure) => {
-            output::error(&failure);
-            failure.exit
-        }
+    interrupt::install(&cancel);
+    let done = match Cli::try_parse() {
+        Ok(cli) => run(cli, &cancel),
+        Err(e) => answer(&e),
     };
+    let exit = done.unwrap_or_else(|failure| {
+        output::error(&failure);
+        failure.exit
+    });
     exit.into()
+}
+
+/// Prints help, the version, or what is wrong with the arguments; clap knows where, and whether colours are wanted.
+fn answer(error: &clap::Error) -> Result<Exit, Failure> {
+    let printed = error.print().and_then(|()| output::stdout().flush());
+    if error.use_stderr() {
+        return Ok(Exit::Usage);
+    }
+    output::judge(printed).map(|_| Exit::Done)
 }

@@ -3,6 +3,7 @@
 use super::{Exit, Failure, albedo, output};
 use crate::cancel::Cancel;
 use crate::encode::atomic;
+use crate::math::figures::exact;
 use crate::report::plot::{self, Scale};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -32,7 +33,10 @@ pub struct Args {
 /// [`Failure`] for an unknown model, a bad parameter or angle, a delta model, or a file that cannot be written.
 pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     if let Some(bad) = args.angles.iter().find(|a| !(0.0..90.0).contains(*a)) {
-        return Err(Failure::usage(format!("--angles {bad} outside [0, 90): degrees from the normal")));
+        return Err(Failure::usage(format!(
+            "--angles {} outside [0, 90): degrees from the normal",
+            exact(bad)
+        )));
     }
     let given = albedo::parse_params(&args.params)?;
     let (info, model) = albedo::build(&args.model, &given)?;
@@ -55,7 +59,7 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         };
         files.push((path.clone(), bytes));
     }
-    atomic::write_all(&files, cancel).map_err(|e| Failure::new(Exit::Io, e))?;
+    atomic::write_all(&files, cancel)?;
     for (path, _) in &files {
         output::talk(&format!("{}", path.display()));
     }

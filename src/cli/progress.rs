@@ -1,10 +1,11 @@
 //! Progress for people: a bar per table and a total on a terminal, plain lines elsewhere, JSON lines on request.
 
-use super::output;
+use super::{Exit, Failure, output};
+use crate::cancel::Cancel;
 use crate::pipeline::{Event, Progress, Recovery};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// How to report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -17,24 +18,69 @@ pub enum Format {
 
 /// The reporter that fits format, quietness and terminal.
 #[must_use]
-pub fn reporter(format: Format, quiet: bool) -> Box<dyn Progress> {
-    match format {
-        Format::Json => Box::new(Json),
+pub fn reporter(format: Format, quiet: bool, cancel: &Arc<Cancel>) -> Reporter {
+    let progress: Box<dyn Progress> = match format {
+        Format::Json => return Reporter::Json(Json { cancel: Arc::clone(cancel), fault: OnceLock::new() }),
         Format::Human if quiet => Box::new(crate::pipeline::Silent),
         Format::Human if std::io::stderr().is_terminal() => Box::new(Bars::default()),
         Format::Human => Box::new(Plain),
+    };
+    Reporter::Talk(progress)
+}
+
+/// What tells of a run.
+pub enum Reporter {
+    /// Data on stdout.
+    Json(Json),
+    /// Talk on stderr.
+    Talk(Box<dyn Progress>),
+}
+
+impl std::fmt::Debug for Reporter {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(if matches!(self, Reporter::Json(_)) { "Json" } else { "Talk" })
     }
 }
 
-struct Json;
+impl Reporter {
+    /// What takes the events.
+    #[must_use]
+    pub fn progress(&self) -> &dyn Progress {
+        match self {
+            Reporter::Json(json) => json,
+            Reporter::Talk(talk) => &**talk,
+        }
+    }
+
+    /// Why not all could be told, if so.
+    ///
+    /// # Errors
+    /// [`Failure`] of the first message that could not be written.
+    pub fn finish(self) -> Result<(), Failure> {
+        match self {
+            Reporter::Json(json) => json.fault.into_inner().map_or(Ok(()), Err),
+            Reporter::Talk(_) => Ok(()),
+        }
+    }
+}
+
+/// One JSON object a line. The first that cannot be written stops the run: who waits for them would wait in vain.
+#[derive(Debug)]
+pub struct Json {
+    cancel: Arc<Cancel>,
+    fault: OnceLock<Failure>,
+}
 
 impl Progress for Json {
     fn event(&self, event: &Event<'_>) {
-        if matches!(event, Event::TableProgress { .. }) {
+        if matches!(event, Event::TableProgress { .. }) || self.fault.get().is_some() {
             return;
         }
-        if let Ok(line) = serde_json::to_string(event) {
-            output::data(&line);
+        let line = serde_json::to_string(event).map_err(|e| Failure::new(Exit::Internal, e));
+        if let Err(fault) = line.and_then(|line| output::data(&line)) {
+            self.cancel.set();
+            // another thread's may have been first
+            let _ = self.fault.set(fault);
         }
     }
 }

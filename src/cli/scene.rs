@@ -14,7 +14,7 @@ pub(super) fn plan(path: &Path, quiet: bool, format: Format) -> Result<Option<Pl
     })?;
     let needs = scene::analyse(&scene);
     match format {
-        Format::Json => json(&scene.file_name, &needs),
+        Format::Json => json(&scene.file_name, &needs)?,
         Format::Human if quiet => {}
         Format::Human => human(&scene, &needs),
     }
@@ -58,7 +58,7 @@ fn human(scene: &scene::Scene, needs: &Needs) {
     }
 }
 
-fn json(file: &str, needs: &Needs) {
+fn json(file: &str, needs: &Needs) -> Result<(), Failure> {
     let line = serde_json::json!({ "reason": "scene", "file": file, "needs": needs.needs, "left_out": needs.left_out });
-    output::data(&line.to_string());
+    output::data(&line.to_string()).map(|_| ())
 }

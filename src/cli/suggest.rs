@@ -3,6 +3,7 @@
 use super::progress::Format;
 use super::{Exit, Failure, output};
 use crate::cancel::Cancel;
+use crate::math::figures::exact;
 use crate::pipeline;
 use crate::pipeline::suggest::{self, Size, Suggestion, Want};
 use crate::recipe::{Engine, Plan};
@@ -37,19 +38,20 @@ pub(super) fn run(
 ) -> Result<Exit, Failure> {
     if !ERRORS.contains(&error) {
         return Err(Failure::usage(format!(
-            "--suggest {error} outside {:e} to {}",
-            ERRORS.start(),
-            ERRORS.end()
+            "--suggest {} outside {} to {}",
+            exact(error),
+            exact(ERRORS.start()),
+            exact(ERRORS.end())
         )));
     }
     let want = Want { error, practical: domain == Domain::Practical, longest: LONGEST };
     let pool = pipeline::pool(jobs)?;
     let all = pool.install(|| suggest::suggest(engine, plan, want, cancel))?;
     for suggestion in &all {
-        match format {
-            Format::Json => output::data(&json(suggestion)),
-            Format::Human => output::data(&page(engine, suggestion)),
-        }
+        output::data(&match format {
+            Format::Json => json(suggestion),
+            Format::Human => page(engine, suggestion),
+        })?;
     }
     // what was not searched is no failure
     let failed = all.iter().any(|s| s.own.is_some() && s.found.is_none());

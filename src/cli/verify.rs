@@ -28,11 +28,11 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     let audit = audit::audit(&args.folder).map_err(failure)?;
     let verdict = audit.verdict();
     if args.json {
-        let mut json = serde_json::to_value(&audit).unwrap_or_default();
-        json["verdict"] = serde_json::to_value(verdict).unwrap_or_default();
-        output::data(&json.to_string());
+        let mut json = serde_json::to_value(&audit).map_err(|e| Failure::new(Exit::Internal, e))?;
+        json["verdict"] = serde_json::to_value(verdict).map_err(|e| Failure::new(Exit::Internal, e))?;
+        output::data(&json.to_string())?;
     } else if !args.quiet {
-        output::data(&text(&args.folder.display().to_string(), &audit));
+        output::data(&text(&args.folder.display().to_string(), &audit))?;
     }
     let foreign = args.strict && !audit.foreign.is_empty();
     Ok(if verdict != Verdict::Whole || foreign { Exit::Failed } else { Exit::Done })

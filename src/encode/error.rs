@@ -1,5 +1,7 @@
 //! Why a table cannot be put into a container.
 
+use crate::math::figures::exact;
+
 /// Why a table cannot be put into a container.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -113,7 +115,10 @@ pub enum EncodeError {
         limit: usize,
     },
     /// A value that is not one of the storage: it was not rounded beforehand.
-    #[error("texel {texel}, channel {channel}: {value} is not a {storage} number; round the table first")]
+    #[error(
+        "texel {texel}, channel {channel}: {} is not a {storage} number; round the table first",
+        exact(.value)
+    )]
     NotQuantised {
         /// Texel number.
         texel: usize,

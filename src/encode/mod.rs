@@ -76,7 +76,7 @@ pub mod text;
 pub use diff::{ImageDiff, Tolerance};
 pub use error::EncodeError;
 pub use option::{FILE_OPTIONS, FileOption, Shape};
-pub use quantise::{Quantised, RangeFault, quantise_table};
+pub use quantise::{Quantised, RangeFault, Unstored, quantise_table, quantise_table_until};
 pub use read::{Image, ReadError};
 pub use storage::Storage;
 

@@ -3,11 +3,12 @@
 use super::Storage;
 use super::blocks::Kind;
 use super::storage::QuantiseError;
+use crate::cancel::{Cancel, Cancelled};
 use crate::grid::Table;
 use crate::grid::table::{Extreme, place};
 
 /// A table as a reader will see it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Quantised {
     /// Stored values, `[texel][channel]`.
     pub values: Vec<f64>,
@@ -32,6 +33,17 @@ pub struct RangeFault {
     pub fault: QuantiseError,
 }
 
+/// Why a table has no stored form.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Unstored {
+    /// A value that the storage cannot hold.
+    #[error(transparent)]
+    Range(#[from] RangeFault),
+    /// Stopped from outside.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
 /// The end of the range for a value beyond it by no more than its own integration error: as good an estimate, and better.
 fn within_its_error(v: f64, [lo, hi]: [f64; 2], error: f64) -> f64 {
     let kept = v.clamp(lo.min(hi), hi.max(lo));
@@ -44,6 +56,19 @@ fn within_its_error(v: f64, [lo, hi]: [f64; 2], error: f64) -> f64 {
 /// # Errors
 /// [`RangeFault`] for the first value (in file order) that `storage` cannot hold.
 pub fn quantise_table(table: &Table, storage: Storage) -> Result<Quantised, RangeFault> {
+    match quantise_table_until(&Cancel::new(), table, storage) {
+        Ok(quantised) => Ok(quantised),
+        Err(Unstored::Range(fault)) => Err(fault),
+        // nobody else has the token
+        Err(Unstored::Cancelled(Cancelled)) => Ok(Quantised::default()),
+    }
+}
+
+/// [`quantise_table`], until it is stopped: storages made of blocks search for seconds.
+///
+/// # Errors
+/// [`Unstored`].
+pub fn quantise_table_until(cancel: &Cancel, table: &Table, storage: Storage) -> Result<Quantised, Unstored> {
     let n = table.channels.len();
     let range = |c: usize| table.channels[c].range;
     let mut values = table.values.clone();
@@ -66,7 +91,7 @@ pub fn quantise_table(table: &Table, storage: Storage) -> Result<Quantised, Rang
         })?;
     }
     let extent = table.grid.extent();
-    let blocks = storage.compress(&values, extent, n, range);
+    let blocks = storage.compress(cancel, &values, extent, n, range)?;
     if storage.is_block() {
         values = storage.expand(&blocks, extent, n, range);
     }
@@ -109,16 +134,17 @@ impl Storage {
     /// The blocks of checked values, `[texel][channel]`; none if the storage has no blocks.
     fn compress(
         self,
+        cancel: &Cancel,
         values: &[f64],
         extent: [usize; 3],
         n: usize,
         range: impl Fn(usize) -> [f64; 2],
-    ) -> Vec<u8> {
-        let Some(kind) = Kind::of(self) else { return Vec::new() };
+    ) -> Result<Vec<u8>, Cancelled> {
+        let Some(kind) = Kind::of(self) else { return Ok(Vec::new()) };
         // checked, so that every value has a position
         let position = |(i, v): (usize, &f64)| self.position(*v, range(i % n.max(1))).unwrap_or(*v);
         let positions: Vec<f64> = values.iter().enumerate().map(position).collect();
-        kind.compress(&positions, n, extent)
+        kind.compress(cancel, &positions, n, extent)
     }
 
     /// What blocks decode to, `[texel][channel]`, in the first `n` channels.

@@ -10,6 +10,7 @@
 
 use super::blocks::{self, Kind};
 use super::coding::{self, Coding, RGBD_LARGEST, Shared, exponent, power_of_two};
+use crate::math::figures::exact;
 use serde::{Deserialize, Serialize};
 
 /// How a number is stored.
@@ -78,13 +79,13 @@ const NOISE: f64 = 1e-12;
 #[non_exhaustive]
 pub enum QuantiseError {
     /// NaN or infinite.
-    #[error("value {value} is not a finite number")]
+    #[error("value {} is not a finite number", exact(.value))]
     NotFinite {
         /// The value.
         value: f64,
     },
     /// It would round to infinity.
-    #[error("value {value} overflows {storage}: the largest is {limit}")]
+    #[error("value {} overflows {storage}: the largest is {}", exact(.value), exact(.limit))]
     Overflow {
         /// The value.
         value: f64,
@@ -94,7 +95,12 @@ pub enum QuantiseError {
         storage: &'static str,
     },
     /// Outside the range that a unorm encodes.
-    #[error("value {value} outside the range [{lo}, {hi}] that {storage} encodes; store it as half or float")]
+    #[error(
+        "value {} outside the range [{}, {}] that {storage} encodes; store it as half or float",
+        exact(.value),
+        exact(.lo),
+        exact(.hi)
+    )]
     OutOfRange {
         /// The value.
         value: f64,
@@ -106,7 +112,7 @@ pub enum QuantiseError {
         storage: &'static str,
     },
     /// Below zero, in a storage without sign.
-    #[error("value {value} is negative and {storage} has no sign; store it as half or float")]
+    #[error("value {} is negative and {storage} has no sign; store it as half or float", exact(.value))]
     Negative {
         /// The value.
         value: f64,
@@ -124,7 +130,11 @@ pub enum QuantiseError {
         storage: &'static str,
     },
     /// The range of the channel is empty or not finite, so that a unorm cannot encode it.
-    #[error("{storage} needs a finite range with lo < hi, got [{lo}, {hi}]; store it as half or float")]
+    #[error(
+        "{storage} needs a finite range with lo < hi, got [{}, {}]; store it as half or float",
+        exact(.lo),
+        exact(.hi)
+    )]
     Range {
         /// Low end of the range.
         lo: f64,

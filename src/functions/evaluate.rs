@@ -1,6 +1,6 @@
 //! A model or a function by name, bound to its parameters: what a row of `brdfbake eval` asks for.
 
-use super::{Angles, FunctionError, FunctionInfo};
+use super::{AngleError, Angles, FunctionError, FunctionInfo};
 use crate::math::{frame, nearest};
 use crate::models::{self, Brdf, Implied, ModelInfo, ParamError, Params};
 use serde_json::{Map, Value as Json};
@@ -37,6 +37,9 @@ pub enum EvalError {
         /// The column.
         column: &'static str,
     },
+    /// An angle that is none.
+    #[error(transparent)]
+    Angle(#[from] AngleError),
     /// A delta has no value.
     #[error(
         "{model} with these parameters is a mirror: its reflection is a delta in direction, which has no value; \
@@ -92,6 +95,7 @@ impl Subject {
             Subject::Function(info, params) => return Ok(info.value(params, angles)?),
             Subject::Model(info, model) => (info, model),
         };
+        angles.check()?;
         if model.mirror(1.0).is_some() {
             return Err(EvalError::Delta { model: info.id });
         }
@@ -108,8 +112,7 @@ fn resolve(
     implied: Implied,
     given: &Map<String, Json>,
 ) -> Result<Params, ParamError> {
-    let implied = models::implied_values(implied);
-    Params::resolve(id, declared, implied.iter().chain(given).map(|(k, v)| (k.as_str(), v)))
+    Params::resolve_over(id, declared, &models::implied_values(implied), given)
 }
 
 /// Every id and other name of models and functions.

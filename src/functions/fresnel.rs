@@ -25,7 +25,7 @@ pub(super) const POLARISATION: Param = Param::choice(
     "electric field across the plane of incidence (s), in it (p), or the mean",
     &["unpolarised", "s", "p"],
 );
-const INCIDENCE: Input = Input::WiTheta("the angle of incidence");
+const INCIDENCE: Input = Input::Incidence("the angle of incidence");
 const BOTH_SIDES: Input = Input::WiTheta("the angle of incidence; above pi/2 the light comes from below");
 
 /// The polarisation that the parameters name.

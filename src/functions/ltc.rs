@@ -75,7 +75,7 @@ pub static ALL: &[FunctionInfo] = &[
         formula: "exp(-((mu - m) / s)^2 / 2) / (s sqrt(2 pi)) + o, with rational m, s, o of the roughness",
         sources: &[(cite::ZELTNER_2022, "section 3; rational fits of MaterialX mx_zeltner_sheen")],
         params: &[ROUGHNESS],
-        inputs: &[Input::WiTheta("the polar angle of the view direction")],
+        inputs: &[Input::Incidence("the polar angle of the view direction")],
         unit: "1",
         range: [-1e-4, 1.0],
         notes: "The weight of the base below the sheen is 1 minus this.",

@@ -20,10 +20,12 @@ pub mod sampling;
 pub mod thin_film;
 
 use crate::cite::Cite;
+use crate::math::figures::{exact, significant};
 use crate::math::frame;
 use crate::models::{self, Alias, Implied, Known, Param, Params, Preset, Quantity};
 pub use evaluate::{EvalError, Subject};
 use glam::DVec3;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Every family of functions, in the order of `list functions`.
 pub static FAMILIES: &[&[FunctionInfo]] = &[
@@ -75,8 +77,10 @@ pub struct FunctionInfo {
 /// What a function reads from the angle columns, with its meaning there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Input {
-    /// The angle in `wi_theta`.
+    /// The angle in `wi_theta`, up to pi.
     WiTheta(&'static str),
+    /// The angle in `wi_theta`, on the side of the normal: up to pi/2.
+    Incidence(&'static str),
     /// The direction in `wi_theta`, `wi_phi`.
     Wi(&'static str),
     /// The direction in `wo_theta`, `wo_phi`.
@@ -88,7 +92,7 @@ impl Input {
     #[must_use]
     pub fn columns(&self) -> (&'static [&'static str], &'static str) {
         match self {
-            Input::WiTheta(meaning) => (&["wi_theta"], meaning),
+            Input::WiTheta(meaning) | Input::Incidence(meaning) => (&["wi_theta"], meaning),
             Input::Wi(meaning) => (&["wi_theta", "wi_phi"], meaning),
             Input::Wo(meaning) => (&["wo_theta", "wo_phi"], meaning),
         }
@@ -127,6 +131,47 @@ impl Angles {
     }
 }
 
+/// How far beyond pi or 2 pi an angle may be: what rounding to four decimals adds.
+const ROUNDING: f64 = 2e-5;
+
+/// An angle that is none, or more than a turn: degrees, most likely.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error(
+    "{column} = {} outside [{}, {}]: angles are in radians",
+    exact(.got),
+    significant(.least, 5),
+    significant(.most, 5)
+)]
+pub struct AngleError {
+    /// The column.
+    pub column: &'static str,
+    /// The angle given.
+    pub got: f64,
+    /// Least that it can be.
+    pub least: f64,
+    /// Most that it can be.
+    pub most: f64,
+}
+
+impl Angles {
+    /// Checks that those that are given are angles in radians: polar ones in [0, pi], azimuths within a turn either way.
+    ///
+    /// # Errors
+    /// [`AngleError`] for the first that is not.
+    pub fn check(&self) -> Result<(), AngleError> {
+        let theta = [("wi_theta", self.wi_theta), ("wo_theta", self.wo_theta)];
+        let phi = [("wi_phi", self.wi_phi), ("wo_phi", self.wo_phi)];
+        let theta = theta.map(|(column, angle)| (column, angle, 0.0, PI + ROUNDING));
+        let phi = phi.map(|(column, angle)| (column, angle, -TAU - ROUNDING, TAU + ROUNDING));
+        for (column, angle, least, most) in theta.into_iter().chain(phi) {
+            if let Some(got) = angle.filter(|a| !(least..=most).contains(a)) {
+                return Err(AngleError { column, got, least, most });
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Angles and directions that a function has asked for; NaN where it has not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct At {
@@ -152,6 +197,9 @@ pub enum FunctionError {
         /// What the column means to the function.
         meaning: &'static str,
     },
+    /// An angle that is none.
+    #[error(transparent)]
+    Angle(#[from] AngleError),
     /// There is no value for these parameters and angles.
     #[error("{function}: {why}")]
     Undefined {
@@ -161,7 +209,7 @@ pub enum FunctionError {
         why: &'static str,
     },
     /// The value is infinite, or a fault.
-    #[error("{function}: the value is {value}, which no file can hold")]
+    #[error("{function}: the value is {}, which no file can hold", exact(.value))]
     NotFinite {
         /// Id of the function.
         function: &'static str,
@@ -176,8 +224,13 @@ impl FunctionInfo {
     /// # Errors
     /// [`FunctionError`] if an angle is missing, or if there is no finite value.
     pub fn value(&self, params: &Params, angles: &Angles) -> Result<f64, FunctionError> {
+        angles.check()?;
         for input in self.inputs {
             let (columns, meaning) = input.columns();
+            if matches!(input, Input::Incidence(_)) && angles.wi_theta.is_some_and(|a| a > FRAC_PI_2) {
+                let why = "wi_theta is outside [0, pi/2], the angles of incidence";
+                return Err(FunctionError::Undefined { function: self.id, why });
+            }
             if let Some(column) = columns.iter().find(|c| angles.get(c).is_none()) {
                 return Err(FunctionError::Blank { function: self.id, column, meaning });
             }

@@ -11,7 +11,7 @@ const N3: Param = number("n3", "real part of the index of the substrate", [0.0, 
 const K3: Param = number("k3", "extinction coefficient of the substrate", [0.0, 100.0], 0.0);
 const THICKNESS: Param = measured("d_nm", "nm", "thickness of the film", [0.0, 1e5], 400.0);
 const WAVELENGTH: Param = measured("lambda_nm", "nm", "wavelength in vacuum", [1.0, 1e6], 550.0);
-const INCIDENCE: Input = Input::WiTheta("the angle of incidence, in vacuum");
+const INCIDENCE: Input = Input::Incidence("the angle of incidence, in vacuum");
 
 fn film(p: &Params) -> Film {
     Film { n2: p.number("n2"), n3: p.number("n3"), k3: p.number("k3"), d_nm: p.number("d_nm") }

@@ -8,6 +8,7 @@
 
 use super::quantity::{Quantity, by_id};
 use super::warp::Warp;
+use crate::math::figures::exact;
 use serde::{Deserialize, Serialize};
 
 /// Where in its cell a texel samples the axis.
@@ -57,7 +58,13 @@ pub struct Axis {
 #[non_exhaustive]
 pub enum AxisError {
     /// The domain is empty, not finite, or outside that of the quantity.
-    #[error("axis {id}: domain [{lo}, {hi}] must be increasing and inside [{min}, {max}], or clamped to it")]
+    #[error(
+        "axis {id}: domain [{}, {}] must be increasing and inside [{}, {}], or clamped to it",
+        exact(.lo),
+        exact(.hi),
+        exact(.min),
+        exact(.max)
+    )]
     Domain {
         /// Axis id.
         id: &'static str,
@@ -89,7 +96,7 @@ pub enum AxisError {
         fault: String,
     },
     /// The clamp interval is not inside the domain.
-    #[error("axis {id}: clamp [{lo}, {hi}] must be increasing and inside the domain")]
+    #[error("axis {id}: clamp [{}, {}] must be increasing and inside the domain", exact(.lo), exact(.hi))]
     Clamp {
         /// Axis id.
         id: &'static str,
@@ -99,7 +106,7 @@ pub enum AxisError {
         hi: f64,
     },
     /// The offset is not a small finite number.
-    #[error("axis {id}: offset {offset} texels outside [-2, 2]")]
+    #[error("axis {id}: offset {} texels outside [-2, 2]", exact(.offset))]
     Offset {
         /// Axis id.
         id: &'static str,
@@ -203,20 +210,21 @@ impl Axis {
         let [lo, hi] = self.domain;
         let v = match (lo.abs() == 0.0, (hi - lo - 1.0).abs() == 0.0) {
             (true, true) => symbol.to_owned(),
-            (true, false) => format!("{symbol} / {hi}"),
-            _ => format!("({symbol} - {lo}) / {}", hi - lo),
+            (true, false) => format!("{symbol} / {}", exact(hi)),
+            _ => format!("({symbol} - {}) / {}", exact(lo), exact(hi - lo)),
         };
         let simple = v == symbol || matches!(self.warp, Warp::Linear);
-        let x = if simple { self.warp.formula(&v) } else { self.warp.formula(&format!("({v})")) };
+        let x = if simple { self.warp.expression(&v) } else { self.warp.expression(&format!("({v})")) };
         let x = if self.direction == Direction::Descending { format!("1 - ({x})") } else { x };
         let shift = if self.offset.abs() == 0.0 {
             String::new()
         } else {
-            format!(" - {} / {}", self.offset, self.len)
+            format!(" - {} / {}", exact(self.offset), self.len)
         };
+        let words = self.warp.words();
         match self.texel {
-            Texel::Center => format!("{x}{shift}"),
-            Texel::Endpoint => format!("(({x}) * {} + 0.5) / {}{shift}", self.len - 1, self.len),
+            Texel::Center => format!("{x}{shift}{words}"),
+            Texel::Endpoint => format!("(({x}) * {} + 0.5) / {}{shift}{words}", self.len - 1, self.len),
         }
     }
 

@@ -17,6 +17,7 @@
 
 use super::layout::{Grid, MAX_AXES, Point, combination};
 use super::{Texel, axis::count, lookup};
+use crate::cancel::Cancel;
 
 /// What the texels of a table hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -238,19 +239,19 @@ impl Samples {
 
     /// The values in `range` that minimise the mean square error, from `start`.
     ///
-    /// A texel that no sample reads keeps its value. Accuracy: relative 1e-11 of the residual of the normal equations;
+    /// A texel that no sample reads keeps its value. Stopped, it is what the steps until then came to. Accuracy: relative 1e-11 of the residual of the normal equations;
     /// where the range binds, the texels that are held are those that left it in up to four rounds, which is nearly,
     /// not always, the best set.
     #[must_use]
-    pub fn least_squares(&self, truth: &[f64], start: &[f64], range: [f64; 2]) -> Vec<f64> {
-        self.weighted(&self.area, truth, start, range, RESIDUAL)
+    pub fn least_squares(&self, truth: &[f64], start: &[f64], range: [f64; 2], cancel: &Cancel) -> Vec<f64> {
+        self.weighted(&self.area, truth, start, (range, RESIDUAL), cancel)
     }
 
     /// The values in `range` that minimise the largest of `|A v - f| / s`, as far as powers up to 64 go; from `start`. s is
     /// a scale of the errors of `start`, so that where the table
     /// reads well does not pay in full for where it does not. At the samples the largest error is at most that of `start`.
     #[must_use]
-    pub fn minimax(&self, truth: &[f64], start: &[f64], range: [f64; 2]) -> Vec<f64> {
+    pub fn minimax(&self, truth: &[f64], start: &[f64], range: [f64; 2], cancel: &Cancel) -> Vec<f64> {
         let errors = |values: &[f64]| -> Vec<f64> {
             self.read(values).iter().zip(truth).map(|(r, f)| (r - f).abs()).collect()
         };
@@ -261,19 +262,19 @@ impl Samples {
             (all, largest)
         };
         let mut best = (relative(start).1, start.to_vec());
-        let mut values = self.least_squares(truth, start, range);
+        let mut values = self.least_squares(truth, start, range, cancel);
         for p in POWERS.iter().flat_map(|p| [*p; NEWTON]) {
             let (errors, largest) = relative(&values);
             if largest < best.0 {
                 best = (largest, values.clone());
             }
-            if largest <= 0.0 {
+            if largest <= 0.0 || cancel.is_set() {
                 break;
             }
             let weight =
                 |((e, s), a): ((&f64, &f64), &f64)| a / (s * s) * libm::pow(e / largest, p - 2.0).max(FLOOR);
             let weights: Vec<f64> = errors.iter().zip(&scale).zip(&self.area).map(weight).collect();
-            let next = self.weighted(&weights, truth, &values, range, RESIDUAL_OF_STEP);
+            let next = self.weighted(&weights, truth, &values, (range, RESIDUAL_OF_STEP), cancel);
             values.iter_mut().zip(next).for_each(|(v, n)| *v += (n - *v) / (p - 1.0));
         }
         if relative(&values).1 < best.0 { values } else { best.1 }
@@ -303,15 +304,14 @@ impl Samples {
         weights: &[f64],
         truth: &[f64],
         start: &[f64],
-        range: [f64; 2],
-        residual: f64,
+        ([lo, hi], residual): ([f64; 2], f64),
+        cancel: &Cancel,
     ) -> Vec<f64> {
-        let [lo, hi] = range;
         let diagonal = self.diagonal(weights);
         let mut free: Vec<bool> = diagonal.iter().map(|d| *d > 0.0).collect();
         let mut values = start.to_vec();
         for _ in 0..ROUNDS {
-            self.solve(weights, truth, &diagonal, &free, residual, &mut values);
+            self.solve((weights, truth), (&diagonal, &free), residual, &mut values, cancel);
             let mut held = false;
             for (v, free) in values.iter_mut().zip(&mut free).filter(|(v, _)| !(lo..=hi).contains(*v)) {
                 (*v, *free, held) = (v.clamp(lo, hi), false, true);
@@ -326,12 +326,11 @@ impl Samples {
     /// Conjugate gradients on the normal equations of the free texels, scaled by their diagonal.
     fn solve(
         &self,
-        weights: &[f64],
-        truth: &[f64],
-        diagonal: &[f64],
-        free: &[bool],
+        (weights, truth): (&[f64], &[f64]),
+        (diagonal, free): (&[f64], &[bool]),
         residual: f64,
         values: &mut [f64],
+        cancel: &Cancel,
     ) {
         let apply = |v: &[f64]| {
             let mut read = self.read(v);
@@ -352,7 +351,7 @@ impl Samples {
         let target = residual * residual * rho;
         let mut direction = z.clone();
         for _ in 0..STEPS {
-            if rho <= target || rho <= 0.0 {
+            if rho <= target || rho <= 0.0 || cancel.is_set() {
                 break;
             }
             let image = apply(&direction);

@@ -2,6 +2,7 @@
 
 use super::layout::{Grid, Point};
 use super::lookup;
+use crate::math::figures::short;
 use serde::{Deserialize, Serialize};
 
 /// One channel and what it means.
@@ -31,7 +32,7 @@ pub struct Table {
 }
 
 /// The largest of something, and where.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Extreme {
     /// The value.
     pub value: f64,
@@ -97,5 +98,5 @@ pub fn named(grid: &Grid, point: &Point) -> Vec<(String, f64)> {
 /// Coordinates as text: `mu = 0.25, roughness = 0.5`.
 #[must_use]
 pub fn place(at: &[(String, f64)]) -> String {
-    at.iter().map(|(id, v)| format!("{id} = {v:.6}")).collect::<Vec<_>>().join(", ")
+    at.iter().map(|(id, v)| format!("{id} = {}", short(v))).collect::<Vec<_>>().join(", ")
 }

@@ -4,6 +4,7 @@
 //! A coupled warp depends on the value of another axis, which is how the corner (mu, alpha) -> (0, 0) of a GGX albedo
 //! is opened up.
 
+use crate::math::figures::exact;
 use serde::{Deserialize, Serialize};
 
 /// How a value in [0, 1] (the axis domain, normalised) is spread over its axis.
@@ -79,20 +80,31 @@ impl Warp {
     /// The forward map as a formula in `symbol`, for reports and shader comments.
     #[must_use]
     pub fn formula(&self, symbol: &str) -> String {
+        format!("{}{}", self.expression(symbol), self.words())
+    }
+
+    /// What the names in [`Warp::expression`] stand for, to be written behind the whole formula.
+    pub(super) fn words(&self) -> String {
+        let Warp::Coupled { to, scale, exponent, .. } = self else { return String::new() };
+        let c = match (same(*scale, 1.0), same(*exponent, 1.0)) {
+            (true, true) => to.clone(),
+            (false, true) => format!("{} {to}", exact(scale)),
+            (true, false) => format!("{to}^{}", exact(exponent)),
+            (false, false) => format!("{} {to}^{}", exact(scale), exact(exponent)),
+        };
+        format!(", c = {c}")
+    }
+
+    /// The formula without what its names stand for: it may be a part of a larger one.
+    pub(super) fn expression(&self, symbol: &str) -> String {
         match self {
             Warp::Linear => symbol.to_owned(),
             Warp::Power(p) if same(*p, 0.5) => format!("sqrt({symbol})"),
-            Warp::Power(p) => format!("{symbol}^{p}"),
+            Warp::Power(p) => format!("{symbol}^{}", exact(p)),
             Warp::OneMinusPower(p) if same(*p, 0.5) => format!("1 - sqrt(1 - {symbol})"),
-            Warp::OneMinusPower(p) => format!("1 - (1 - {symbol})^{p}"),
-            Warp::Coupled { to, power, scale, exponent } => {
-                let c = match (same(*scale, 1.0), same(*exponent, 1.0)) {
-                    (true, true) => to.clone(),
-                    (false, true) => format!("{scale} {to}"),
-                    (true, false) => format!("{to}^{exponent}"),
-                    (false, false) => format!("{scale} {to}^{exponent}"),
-                };
-                format!("({symbol} (1 + c) / ({symbol} + c))^(1/{power}), c = {c}")
+            Warp::OneMinusPower(p) => format!("1 - (1 - {symbol})^{}", exact(p)),
+            Warp::Coupled { power, .. } => {
+                format!("({symbol} (1 + c) / ({symbol} + c))^(1/{})", exact(power))
             }
         }
     }
@@ -102,7 +114,7 @@ impl Warp {
     pub fn fault(&self) -> Option<String> {
         let bad = |name: &str, p: f64| {
             (!(p.is_finite() && (1e-3..=1e3).contains(&p)))
-                .then(|| format!("{name} = {p} outside [0.001, 1000]"))
+                .then(|| format!("{name} = {} outside [0.001, 1000]", exact(p)))
         };
         match self {
             Warp::Linear => None,

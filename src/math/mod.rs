@@ -3,6 +3,7 @@
 pub mod complex;
 pub mod double;
 pub mod exp;
+pub mod figures;
 pub mod frame;
 pub mod least_squares;
 pub mod nearest;

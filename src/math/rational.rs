@@ -7,6 +7,7 @@
 //! [Nakatsukasa and Trefethen](crate::cite::NAKATSUKASA_TREFETHEN_2020)) turn the sum of squares into the largest error. The
 //! best of all steps is kept. Everything is summed in the order of the points.
 
+use crate::cancel::Cancel;
 use crate::math::least_squares::{least_squares, positive};
 
 /// Least value of a denominator at a point.
@@ -69,9 +70,9 @@ impl Fitted {
 }
 
 /// Coefficients of the terms, after `steps` steps; none if no denominator stays positive at the points, or
-/// if there are fewer points than coefficients.
+/// if there are fewer points than coefficients. Stopped, it is the best of the steps until then.
 #[must_use]
-pub fn fit(points: &[Point], terms: &Terms, power: usize, steps: usize) -> Option<Fitted> {
+pub fn fit(points: &[Point], terms: &Terms, power: usize, steps: usize, cancel: &Cancel) -> Option<Fitted> {
     if points.len() < terms.above.len() + terms.below.len() {
         return None;
     }
@@ -81,7 +82,7 @@ pub fn fit(points: &[Point], terms: &Terms, power: usize, steps: usize) -> Optio
     let mut lawson = vec![1.0; points.len()];
     let mut damping = 1e-6;
     let mut best = (f64::INFINITY, c.clone());
-    for step in 0..steps {
+    for step in (0..steps).take_while(|_| !cancel.is_set()) {
         let weights: Vec<f64> =
             points.iter().zip(&lawson).map(|(p, l): (&Point, &f64)| p.weight * l.sqrt()).collect();
         if let Some((next, values)) = problem.step(&c, &now, &weights, &mut damping) {

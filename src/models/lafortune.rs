@@ -14,6 +14,7 @@ use super::param::Column;
 use super::ward::RHO_D;
 use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Quantity};
 use crate::cite;
+use crate::math::figures::exact;
 use std::f64::consts::TAU;
 
 /// Registry entry.
@@ -66,7 +67,9 @@ pub(super) fn part(model: &'static str, c: [f64; 3], n: f64, rho: f64) -> Result
     let log_peak = n * libm::log(longest.max(f64::MIN_POSITIVE));
     if log_peak > 600.0 {
         let why = format!(
-            "a lobe with |C| = {longest} and n = {n} has a peak of e^{log_peak:.0}, beyond all numbers; lower one of them"
+            "a lobe with |C| = {} and n = {} has a peak of e^{log_peak:.0}, beyond all numbers; lower one of them",
+            exact(longest),
+            exact(n)
         );
         return Err(ParamError::Together { model, why });
     }

@@ -1,5 +1,6 @@
 //! Parameters of models: declared once, used by recipe checks, `describe`, test grids, file metadata and docs.
 
+use crate::math::figures::exact;
 use serde_json::Value as Json;
 
 /// One parameter of a model.
@@ -90,7 +91,7 @@ pub enum ParamError {
         suggestion: Option<String>,
     },
     /// A number outside its range.
-    #[error("{model}: {key} = {got} outside [{min}, {max}]")]
+    #[error("{model}: {key} = {} outside [{}, {}]", exact(.got), exact(.min), exact(.max))]
     Range {
         /// Model id.
         model: &'static str,
@@ -115,6 +116,16 @@ pub enum ParamError {
         /// What is allowed.
         allowed: String,
     },
+    /// One parameter under two of its names.
+    #[error("{model}: `{key}` and `{other}` are the same parameter; leave one out")]
+    Twice {
+        /// Model id.
+        model: &'static str,
+        /// The name that was given first.
+        key: String,
+        /// The other one.
+        other: String,
+    },
     /// Parameters that are each in range but not together.
     #[error("{model}: {why}")]
     Together {
@@ -130,7 +141,7 @@ impl ParamError {
     #[must_use]
     pub fn key(&self) -> Option<&str> {
         match self {
-            ParamError::Unknown { key, .. } => Some(key),
+            ParamError::Unknown { key, .. } | ParamError::Twice { other: key, .. } => Some(key),
             ParamError::Range { key, .. } | ParamError::Kind { key, .. } => Some(key),
             ParamError::Together { .. } => None,
         }
@@ -178,6 +189,25 @@ impl Params {
             values.push((param.id, value));
         }
         Ok(Params { model, values })
+    }
+
+    /// The same, where a name of the model stands for some values, which given ones replace.
+    ///
+    /// # Errors
+    /// As [`Params::resolve`]; [`ParamError::Twice`] for a parameter that is given under two names.
+    pub fn resolve_over(
+        model: &'static str,
+        declared: &'static [Param],
+        implied: &serde_json::Map<String, Json>,
+        given: &serde_json::Map<String, Json>,
+    ) -> Result<Params, ParamError> {
+        let same = |a: &str, b: &str| declared.iter().any(|p| p.is_called(a) && p.is_called(b));
+        for (i, other) in given.keys().enumerate() {
+            if let Some(key) = given.keys().take(i).find(|key| same(key, other)) {
+                return Err(ParamError::Twice { model, key: key.clone(), other: other.clone() });
+            }
+        }
+        Params::resolve(model, declared, implied.iter().chain(given).map(|(k, v)| (k.as_str(), v)))
     }
 
     /// The model that these belong to.
@@ -291,8 +321,8 @@ fn parse_rows(columns: &[Column], value: &Json) -> Result<Vec<Vec<f64>>, (Option
         for (cell, column) in row.iter().zip(columns) {
             let got = cell.as_f64().ok_or_else(list)?;
             if !(got >= column.min && got <= column.max) {
-                let what = format!("{} = {got} in row {}", column.id, i + 1);
-                return Err((Some(what), format!("in [{}, {}]", column.min, column.max)));
+                let what = format!("{} = {} in row {}", column.id, exact(got), i + 1);
+                return Err((Some(what), format!("in [{}, {}]", exact(column.min), exact(column.max))));
             }
             numbers.push(got);
         }

@@ -9,6 +9,7 @@ use super::lambert::Lambert;
 use super::lobes::{Cosine, Diffuse, Over, Part, Sum};
 use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
 use crate::cite;
+use crate::math::figures::exact;
 use std::f64::consts::{FRAC_1_PI, TAU};
 
 /// Registry entry.
@@ -82,7 +83,13 @@ pub(super) fn at_most_one(
     if a + b <= 1.0 + 4.0 * f64::EPSILON {
         Ok([a, b])
     } else {
-        let why = format!("{} = {a} and {} = {b} add up to more than 1; lower one of them", ids[0], ids[1]);
+        let why = format!(
+            "{} = {} and {} = {} add up to more than 1; lower one of them",
+            ids[0],
+            exact(a),
+            ids[1],
+            exact(b)
+        );
         Err(ParamError::Together { model, why })
     }
 }

@@ -124,9 +124,10 @@ pub(super) fn fit(
         let exact: Vec<f64> = table.values.iter().skip(c).step_by(n).copied().collect();
         let f: Vec<f64> = truth.iter().map(|t| t.2[c]).collect();
         let range = feasible(table.channels[c].range, &exact);
-        (samples.least_squares(&f, &exact, range), samples.minimax(&f, &exact, range))
+        (samples.least_squares(&f, &exact, range, cancel), samples.minimax(&f, &exact, range, cancel))
     };
     let (least_squares, minimax): (Vec<_>, Vec<_>) = (0..n).into_par_iter().map(channel).unzip();
+    cancel.check()?;
     let interleave = |channels: &[Vec<f64>]| -> Vec<f64> {
         (0..grid.len()).flat_map(|t| channels.iter().map(move |values| values[t])).collect()
     };

@@ -152,8 +152,12 @@ impl<'a> Search<'a> {
     }
 
     fn at(&self, point: &Point) -> Sums {
+        let nothing = [f64::NAN; MAX_CHANNELS];
+        if self.cancel.is_set() {
+            return nothing;
+        }
         let texel = self.bound().baker.texel(point.values(), self.tolerance);
-        texel.map_or([f64::NAN; MAX_CHANNELS], |e| e.value)
+        texel.map_or(nothing, |e| e.value)
     }
 
     /// The error of exact texels from which what is asked for may still be reached.
@@ -232,8 +236,14 @@ impl<'a> Search<'a> {
             true => None,
             false => Some(fit::fit(self.planned, &bound, &table, self.tolerance, quick, self.cancel)?),
         };
-        let probe = Probe::new(&bound, self.tolerance, COMPARED);
-        let source = Source { bound: &bound, table: &table, fitted: fitted.as_ref(), probe: Some(&probe) };
+        let probe = Probe::until(self.cancel, &bound, self.tolerance, COMPARED);
+        let source = Source {
+            bound: &bound,
+            table: &table,
+            fitted: fitted.as_ref(),
+            probe: Some(&probe),
+            cancel: self.cancel,
+        };
         let mut worst = 0.0_f64;
         for storage in &self.storages {
             // what cannot be stored is reported by the bake itself
@@ -243,6 +253,7 @@ impl<'a> Search<'a> {
             worst = worst.max(spread.unwrap_or(&measured.whole).largest.value);
         }
         let mut least = self.least.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        self.cancelled()?;
         *least = least.min(worst);
         Ok(worst)
     }

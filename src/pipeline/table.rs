@@ -6,7 +6,7 @@ use super::manifest::tool;
 use super::texels::{Chosen, Source};
 use super::{Event, Extremum, FileRecord, PipelineError, Progress, TableRecord, size};
 use crate::cancel::Cancel;
-use crate::encode::{self, EncodeInput, Shape, Storage};
+use crate::encode::{self, EncodeInput, Shape, Storage, Unstored};
 use crate::grid::Provenance;
 use crate::grid::provenance::{AxisRecord, Encoding, Integration, RecipeId, SCHEMA, SizeRecord, Subject};
 use crate::models::source_lines;
@@ -51,8 +51,8 @@ pub(super) fn make(
         .map_err(|error| PipelineError::Bake { table: name.to_owned(), error })?;
     let bake_seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let (verified, let_through) = verify::check(&planned.bound, table, planned.tolerance, &planned.waivers)
-        .map_err(PipelineError::Laws)?;
+    let checked = verify::check_until(cancel, &planned.bound, table, planned.tolerance, &planned.waivers)?;
+    let (verified, let_through) = checked.map_err(PipelineError::Laws)?;
     for finding in &let_through {
         progress.event(&Event::Finding { table: name, finding });
     }
@@ -71,13 +71,15 @@ pub(super) fn make(
         true => None,
         false => Some(fit::fit(planned, &planned.bound, verified.table(), planned.tolerance, false, cancel)?),
     };
-    let probe = planned.reconstruction.then(|| Probe::new(&planned.bound, planned.tolerance, COMPARED));
+    let probe =
+        planned.reconstruction.then(|| Probe::until(cancel, &planned.bound, planned.tolerance, COMPARED));
     for (output, file) in planned.outputs.iter().zip(names) {
         let source = Source {
             bound: &planned.bound,
             table: verified.table(),
             fitted: fitted.as_ref(),
             probe: probe.as_ref(),
+            cancel,
         };
         let (record, bytes) = encode_output(planned, output, &source, &provenance, &file)?;
         made.record.files.push(record);
@@ -116,9 +118,14 @@ fn encode_output(
     };
     let encoder = encode::encoder(&output.container).ok_or_else(unknown)?;
     let storage = Storage::find(&output.storage).ok_or_else(unknown)?;
-    let Chosen { stored, reconstruction, texels } = source
-        .choose(planned.texels, storage)
-        .map_err(|error| PipelineError::Range { table: name.clone(), output: label.clone(), error })?;
+    let Chosen { stored, reconstruction, texels } =
+        source.choose(planned.texels, storage).map_err(|error| match error {
+            Unstored::Cancelled(stopped) => stopped.into(),
+            Unstored::Range(error) => {
+                PipelineError::Range { table: name.clone(), output: label.clone(), error }
+            }
+        })?;
+    source.cancel.check()?;
     let options = output.file_options();
     let shape = Shape { grid: &table.grid, channels: table.channels.len(), storage, options: &options };
     let encoding = Encoding {

@@ -2,7 +2,8 @@
 //! that open.
 
 use super::fit::{Figures, Fitted};
-use crate::encode::{self, Quantised, RangeFault, Storage};
+use crate::cancel::Cancel;
+use crate::encode::{self, Quantised, Storage, Unstored};
 use crate::grid::Table;
 use crate::grid::fit::{Objective, Texels};
 use crate::grid::provenance::{ChannelTexels, ChoiceRecord, Reconstruction, Spread, TexelRecord};
@@ -22,6 +23,7 @@ pub(super) struct Source<'a> {
     pub(super) table: &'a Table,
     pub(super) fitted: Option<&'a Fitted>,
     pub(super) probe: Option<&'a Probe<'a>>,
+    pub(super) cancel: &'a Cancel,
 }
 
 /// The numbers of a file.
@@ -40,9 +42,9 @@ struct Candidate {
 impl Source<'_> {
     /// Rounds and measures what is asked for, and all choices where texels are fitted. Minimax that reads no better than
     /// the integrals, as stored, gives way to them.
-    pub(super) fn choose(&self, asked: Texels, storage: Storage) -> Result<Chosen, RangeFault> {
+    pub(super) fn choose(&self, asked: Texels, storage: Storage) -> Result<Chosen, Unstored> {
         let Some(fitted) = self.fitted else {
-            let stored = encode::quantise_table(self.table, storage)?;
+            let stored = encode::quantise_table_until(self.cancel, self.table, storage)?;
             let reconstruction = self.probe.map(|p| p.measure(&stored.values));
             return Ok(Chosen { stored, reconstruction, texels: None });
         };
@@ -116,9 +118,9 @@ impl Source<'_> {
         fitted: &Fitted,
         held: &[Objective],
         storage: Storage,
-    ) -> Result<Candidate, RangeFault> {
+    ) -> Result<Candidate, Unstored> {
         let table = Table { values: self.mix(fitted, held), ..self.table.clone() };
-        let stored = encode::quantise_table(&table, storage)?;
+        let stored = encode::quantise_table_until(self.cancel, &table, storage)?;
         let figures = fitted.figures(self.bound, &stored.values);
         Ok(Candidate { stored, figures })
     }
@@ -157,7 +159,7 @@ impl Source<'_> {
         fitted: &Fitted,
         all: &[Candidate],
         storage: Storage,
-    ) -> Result<Vec<Objective>, RangeFault> {
+    ) -> Result<Vec<Objective>, Unstored> {
         let n = self.table.channels.len();
         if self.bound.baker.decoded().is_none() {
             let alone: Vec<Objective> = (0..n).map(|c| best(all, c..=c)).collect();

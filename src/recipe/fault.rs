@@ -1,6 +1,7 @@
 //! What can be wrong with a recipe: one enum, whose variants carry what was given and what is allowed.
 
 use crate::grid::{AxisError, GridError};
+use crate::math::figures::exact as number;
 use crate::models::ParamError;
 use crate::tables::BindError;
 
@@ -304,13 +305,6 @@ fn did_you_mean(word: impl AsRef<str>) -> String {
 
 fn hint(suggestion: Option<&str>, allowed: &str) -> String {
     suggestion.map_or_else(|| format!("there is {allowed}"), did_you_mean)
-}
-
-/// A number as a person would write it: exponents only where they help.
-pub(super) fn number(x: impl std::borrow::Borrow<f64>) -> String {
-    let x = *x.borrow();
-    let plain = x.abs() == 0.0 || (1e-4..1e7).contains(&x.abs()) || !x.is_finite();
-    if plain { format!("{x}") } else { format!("{x:e}") }
 }
 
 /// Given text in a message: control characters escaped, cut after 64 characters.

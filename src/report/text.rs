@@ -1,24 +1,7 @@
 //! Pieces of reports: numbers, aligned lines, safe strings.
 
+pub use crate::math::figures::short as number;
 use std::fmt::Write;
-
-/// A number with six significant digits, without trailing zeros: `0.0312`, `1.5e-7`.
-#[must_use]
-pub fn number(v: f64) -> String {
-    if !v.is_finite() || v.abs() == 0.0 {
-        return v.abs().to_string().replace("inf", if v < 0.0 { "-inf" } else { "inf" });
-    }
-    let scientific = format!("{v:.5e}");
-    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
-    let trim = |s: &str| {
-        let s = if s.contains('.') { s.trim_end_matches('0').trim_end_matches('.') } else { s };
-        s.to_owned()
-    };
-    match exponent.parse::<i32>() {
-        Ok(e @ -4..=6) => trim(&format!("{v:.*}", usize::try_from(5 - e).unwrap_or(0))),
-        _ => format!("{}e{exponent}", trim(mantissa)),
-    }
-}
 
 /// Text from a file with its control characters spelled out, so that a file cannot steer a terminal.
 #[must_use]
@@ -69,30 +52,7 @@ impl Lines {
 
 #[cfg(test)]
 mod tests {
-    use super::{clean, number};
-
-    #[test]
-    fn numbers_are_short_and_true() {
-        let cases = [
-            (0.0, "0"),
-            (-0.0, "0"),
-            (1.0, "1"),
-            (-2.5, "-2.5"),
-            (100.0, "100"),
-            (1234567.0, "1234567"),
-            (12345678.0, "1.23457e7"),
-            (0.03125, "0.03125"),
-            (0.0001, "0.0001"),
-            (0.999_999_9, "1"),
-            (1.5e-7, "1.5e-7"),
-            (f64::INFINITY, "inf"),
-            (f64::NEG_INFINITY, "-inf"),
-            (f64::NAN, "NaN"),
-        ];
-        for (v, expected) in cases {
-            assert_eq!(number(v), expected);
-        }
-    }
+    use super::clean;
 
     #[test]
     fn a_file_cannot_steer_the_terminal() {

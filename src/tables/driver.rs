@@ -43,12 +43,14 @@ impl std::fmt::Debug for Options<'_> {
 #[non_exhaustive]
 pub enum BakeError {
     /// A texel has no value.
-    #[error("texel {texel} ({place}): {error}")]
+    #[error("texel {texel} ({place}): {}", .error.of(.channels.iter().map(String::as_str)))]
     Texel {
         /// Texel number.
         texel: usize,
         /// Its coordinates.
         place: String,
+        /// Ids of the channels of the table.
+        channels: Vec<String>,
         /// Why.
         error: TexelError,
     },
@@ -130,10 +132,14 @@ fn bake_row(bound: &Bound, texels: std::ops::Range<usize>, options: Options<'_>)
     let mut row = Row { values: Vec::new(), errors: Vec::new(), evaluations: Vec::new() };
     for texel in texels {
         options.cancel.check()?;
-        let e = bound
-            .baker
-            .texel(grid.texel(texel).values(), options.tolerance)
-            .map_err(|error| BakeError::Texel { texel, place: super::place(grid, texel), error })?;
+        let e = bound.baker.texel(grid.texel(texel).values(), options.tolerance).map_err(|error| {
+            BakeError::Texel {
+                texel,
+                place: super::place(grid, texel),
+                channels: bound.spec.layout.ids().map(str::to_owned).collect(),
+                error,
+            }
+        })?;
         row.values.extend_from_slice(&e.value[..channels]);
         row.errors.extend_from_slice(&e.error[..channels]);
         row.evaluations.push(e.evaluations);

@@ -47,6 +47,7 @@ use crate::cite::Cite;
 use crate::grid::provenance::Residual;
 use crate::grid::{Axis, Channel, Table, table::named};
 use crate::integrate::Estimate;
+use crate::math::figures::exact;
 use crate::models::Param;
 pub use selection::Selection;
 pub use spec::{BindError, Bound, Spec};
@@ -112,12 +113,12 @@ pub trait Baker: Send + Sync {
     }
 }
 
-/// Why a texel has no value. The driver adds where.
+/// Why a texel has no value. Whoever knows the point and the names of the channels adds them ([`TexelError::of`]).
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TexelError {
     /// NaN or infinity.
-    #[error("channel {channel} is {value}")]
+    #[error("channel {channel} is {}", exact(.value))]
     NotFinite {
         /// Channel number.
         channel: usize,
@@ -141,6 +142,20 @@ pub enum TexelError {
 /// Values in closed form, if the first `channels` of them are finite.
 fn closed_form(value: crate::integrate::Sums, channels: usize) -> Result<Estimate, TexelError> {
     finite(Estimate::exact(value), channels)
+}
+
+impl TexelError {
+    /// The fault with the name of its channel.
+    #[must_use]
+    pub fn of<'a>(&self, mut channels: impl Iterator<Item = &'a str>) -> String {
+        match self {
+            TexelError::NotFinite { channel, value } => {
+                let id = channels.nth(*channel).map_or_else(|| format!("channel {channel}"), str::to_owned);
+                format!("{id} is {}", exact(value))
+            }
+            other => other.to_string(),
+        }
+    }
 }
 
 /// An estimate of which the first `channels` values and errors are finite.

@@ -158,12 +158,11 @@ impl Request {
         let layout = Selection::resolve(kind, self.layout.as_deref(), self.channels.as_deref())?;
         let grid = Grid::new(self.axes.clone().unwrap_or_else(kind.axes))?;
         let (model, model_params, table_params) = self.split_params(kind)?;
-        let params = Params::resolve(kind.id, kind.params, borrowed(&table_params))?;
+        let params = Params::resolve_over(kind.id, kind.params, &Map::new(), &table_params)?;
         let model = match model {
             Some((info, implied)) => {
                 let implied = models::implied_values(implied);
-                let all = borrowed(&implied).chain(borrowed(&model_params));
-                Some((info, Params::resolve(info.id, info.params, all)?))
+                Some((info, Params::resolve_over(info.id, info.params, &implied, &model_params)?))
             }
             None => None,
         };
@@ -250,10 +249,6 @@ impl Spec {
 
 fn axis_ids(grid: &Grid) -> String {
     grid.axes().iter().map(|a| a.quantity.id).collect::<Vec<_>>().join(", ")
-}
-
-fn borrowed(map: &Map<String, Json>) -> impl Iterator<Item = (&str, &Json)> {
-    map.iter().map(|(k, v)| (k.as_str(), v))
 }
 
 pub(super) fn unknown<'a>(

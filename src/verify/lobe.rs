@@ -32,7 +32,7 @@ fn check(case: &Case<'_>) -> Outcome {
     let splits = case.bound.spec.model.as_ref().is_some_and(|(info, _)| info.splits);
     let Ok(sweep) = Sweep::new(&case.bound.spec, splits) else { return Outcome::vacuous("no model") };
     let mut outcome = Outcome::start();
-    for texel in 0..case.table.grid.len() {
+    for texel in (0..case.table.grid.len()).take_while(|_| case.goes_on()) {
         let Some(m) = ltc_matrix::stored(case.table, texel) else {
             return Outcome::vacuous("no matrix in these channels");
         };
@@ -41,7 +41,9 @@ fn check(case: &Case<'_>) -> Outcome {
             outcome.tighten(f64::NEG_INFINITY, || format!("{m:?}, {}", place(&case.table.grid, texel)));
         }
     }
-    for (i, texel) in seeds::texels(case.table, TEXELS, 0x17c).into_iter().enumerate() {
+    for (i, texel) in
+        seeds::texels(case.table, TEXELS, 0x17c).into_iter().enumerate().take_while(|_| case.goes_on())
+    {
         let point = case.table.grid.texel(texel);
         let view = sweep.view(point.values());
         let (Ok(model), Some(m)) = (sweep.model(point.values()), ltc_matrix::stored(case.table, texel))

@@ -22,6 +22,7 @@ pub mod survey;
 pub mod tolerance;
 pub mod total;
 
+use crate::cancel::{Cancel, Cancelled};
 use crate::grid::Table;
 use crate::grid::provenance::{LawRecord, Waiver};
 use crate::tables::Bound;
@@ -67,6 +68,16 @@ pub struct Case<'a> {
     pub table: &'a Table,
     /// Tolerance that was asked for.
     pub tolerance: f64,
+    /// Set from outside to stop: what a law finds after that is thrown away.
+    pub cancel: &'a Cancel,
+}
+
+impl Case<'_> {
+    /// False once the check is to stop; loops of laws look at it.
+    #[must_use]
+    pub fn goes_on(&self) -> bool {
+        !self.cancel.is_set()
+    }
 }
 
 /// The outcome of a law: its smallest margin (negative when it is broken) and where.
@@ -145,13 +156,29 @@ pub fn check(
     tolerance: f64,
     waivers: &[Waiver],
 ) -> Result<(Verified, Vec<Finding>), Vec<Finding>> {
-    let case = Case { bound, table: &table, tolerance };
+    check_until(&Cancel::new(), bound, table, tolerance, waivers).unwrap_or_else(|Cancelled| Err(Vec::new()))
+}
+
+/// [`check`], until it is stopped.
+///
+/// # Errors
+/// [`Cancelled`]; within, what [`check`] returns.
+#[allow(clippy::type_complexity, reason = "the result of `check`, or none")]
+pub fn check_until(
+    cancel: &Cancel,
+    bound: &Bound,
+    table: Table,
+    tolerance: f64,
+    waivers: &[Waiver],
+) -> Result<Result<(Verified, Vec<Finding>), Vec<Finding>>, Cancelled> {
+    let case = Case { bound, table: &table, tolerance, cancel };
     let mut laws = Vec::new();
     let mut broken = Vec::new();
     let mut let_through = Vec::new();
     let mut waived = Vec::new();
     for law in LAWS.iter().filter(|l| bound.spec.kind.laws.contains(&l.id)) {
         let outcome = (law.check)(&case);
+        cancel.check()?;
         let held = outcome.margin >= 0.0;
         if !held {
             let finding = Finding::broken(law, &outcome, &bound.spec);
@@ -165,5 +192,8 @@ pub fn check(
         }
         laws.push(LawRecord { law: law.id.to_owned(), held, margin: outcome.margin, at: outcome.at });
     }
-    if broken.is_empty() { Ok((Verified { table, laws, waived }, let_through)) } else { Err(broken) }
+    if !broken.is_empty() {
+        return Ok(Err(broken));
+    }
+    Ok(Ok((Verified { table, laws, waived }, let_through)))
 }

@@ -5,6 +5,7 @@
 //! that is more than a limit, every n-th one. Then the cells of the largest errors are searched on a finer
 //! grid of 5 x 5 points each, so that a corner does not slip through between two middles.
 
+use crate::cancel::Cancel;
 use crate::grid::axis::count;
 use crate::grid::layout::{MAX_AXES, Point, combination};
 use crate::grid::provenance::{Reconstruction, Spread};
@@ -25,6 +26,7 @@ const SEARCHED: usize = 8;
 /// Points between the texels with fresh integrals, made once and compared with every stored form of a table.
 #[derive(Debug)]
 pub struct Probe<'a> {
+    cancel: &'a Cancel,
     bound: &'a Bound,
     tolerance: f64,
     points: Vec<Fresh>,
@@ -51,13 +53,21 @@ impl<'a> Probe<'a> {
     /// Points where the integral itself fails are left out; the laws report those.
     #[must_use]
     pub fn new(bound: &'a Bound, tolerance: f64, limit: usize) -> Probe<'a> {
+        static NEVER: Cancel = Cancel::new();
+        Probe::until(&NEVER, bound, tolerance, limit)
+    }
+
+    /// [`Probe::new`] that leaves out what is not integrated when it is stopped, then and in every measure; who stops it
+    /// throws the figures away.
+    #[must_use]
+    pub fn until(cancel: &'a Cancel, bound: &'a Bound, tolerance: f64, limit: usize) -> Probe<'a> {
         let grid = &bound.spec.grid;
         let between: Vec<Vec<f64>> = (0..grid.axes().len()).map(|i| grid.between(i)).collect();
         let total: usize = between.iter().map(Vec::len).product();
         let step = total.div_ceil(limit.max(1));
         let chosen: Vec<[f64; MAX_AXES]> =
             (0..total).step_by(step).map(|n| combination(&between, n)).collect();
-        let mut probe = Probe { bound, tolerance, points: Vec::new() };
+        let mut probe = Probe { cancel, bound, tolerance, points: Vec::new() };
         probe.points = probe.integrate(&chosen);
         probe
     }
@@ -106,6 +116,7 @@ impl<'a> Probe<'a> {
 
     fn integrate(&self, points: &[[f64; MAX_AXES]]) -> Vec<Fresh> {
         let fresh = |x: &[f64; MAX_AXES]| {
+            self.cancel.check().ok()?;
             let point = self.bound.spec.grid.at_coordinates(x);
             let mut value = self.bound.baker.texel(point.values(), self.tolerance).ok()?.value;
             self.bound.baker.decode(point.values(), &mut value);

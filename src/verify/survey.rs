@@ -2,6 +2,7 @@
 //! places, against what the model claims. `brdfbake laws` prints it.
 
 use super::seeds::Seeds;
+use crate::cancel::{Cancel, Cancelled};
 use crate::math::frame;
 use crate::models::{Brdf, Kind, ModelInfo, Params};
 use crate::tables::integral::{Functional, integrate};
@@ -64,23 +65,39 @@ pub enum Verdict {
 /// Surveys a model: its default parameters, and each number at both ends of its range and in between.
 #[must_use]
 pub fn survey(info: &'static ModelInfo) -> Survey {
+    match survey_until(&Cancel::new(), info) {
+        Ok(survey) => survey,
+        Err(Cancelled) => unreached(info),
+    }
+}
+
+/// A model of which nothing is known yet.
+fn unreached(info: &'static ModelInfo) -> Survey {
     let nothing = |value| Found { value, at: "nowhere".to_owned() };
-    let mut s = Survey {
+    Survey {
         model: info.id,
         reciprocity: nothing(0.0),
         largest_e: nothing(f64::NAN),
         faulty: None,
         verdict: Verdict::Lawful,
         words: String::new(),
-    };
+    }
+}
+
+/// [`survey`], until it is stopped.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn survey_until(cancel: &Cancel, info: &'static ModelInfo) -> Result<Survey, Cancelled> {
+    let mut s = unreached(info);
     for (label, params) in parameter_sets(info) {
         if let Ok(model) = (info.build)(&params) {
             pairs(&*model, &label, &mut s);
-            albedos(&*model, &label, &mut s);
+            albedos(cancel, &*model, &label, &mut s)?;
         }
     }
     judge(info, &mut s);
-    s
+    Ok(s)
 }
 
 fn pairs(model: &dyn Brdf, label: &str, s: &mut Survey) {
@@ -101,8 +118,9 @@ fn pairs(model: &dyn Brdf, label: &str, s: &mut Survey) {
     }
 }
 
-fn albedos(model: &dyn Brdf, label: &str, s: &mut Survey) {
+fn albedos(cancel: &Cancel, model: &dyn Brdf, label: &str, s: &mut Survey) -> Result<(), Cancelled> {
     for mu in COSINES {
+        cancel.check()?;
         let Ok(e) = integrate(model, mu, &[Functional::One], TOLERANCE) else { continue };
         // an estimate that stays large (a divergence, a stiff corner) proves nothing
         let lower = e.value[0] - e.error[0];
@@ -113,6 +131,7 @@ fn albedos(model: &dyn Brdf, label: &str, s: &mut Survey) {
             s.largest_e = Found { value: e.value[0], at: format!("{label}, mu {mu:.4}") };
         }
     }
+    Ok(())
 }
 
 fn judge(info: &ModelInfo, s: &mut Survey) {

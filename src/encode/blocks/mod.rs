@@ -9,6 +9,7 @@ mod bc6h_search;
 mod ramp;
 
 use super::Storage;
+use crate::cancel::{Cancel, Cancelled};
 use bc6h::TEXELS;
 pub(super) use ramp::{STEP, TOP};
 use rayon::prelude::*;
@@ -62,14 +63,21 @@ impl Kind {
     }
 
     /// The blocks of a picture with `n` channels, `[texel][channel]`. Channels without value are 0.
-    pub(super) fn compress(self, values: &[f64], n: usize, extent: [usize; 3]) -> Vec<u8> {
+    pub(super) fn compress(
+        self,
+        cancel: &Cancel,
+        values: &[f64],
+        n: usize,
+        extent: [usize; 3],
+    ) -> Result<Vec<u8>, Cancelled> {
         let [width, height, _] = extent;
         let blocks: Vec<usize> = (0..self.bytes(extent).unwrap_or(0) / self.block_bytes()).collect();
         let value =
             |texel: usize, c: usize| values.get(texel * n + c).copied().filter(|_| c < n).unwrap_or(0.0);
-        let encoded: Vec<Vec<u8>> = blocks
+        let encoded: Result<Vec<Vec<u8>>, Cancelled> = blocks
             .par_iter()
             .map(|&block| {
+                cancel.check()?;
                 let mut texels = [[0.0; 3]; TEXELS];
                 for (i, texel) in texels.iter_mut().enumerate() {
                     let [x, y, row] = place(block, i, [width, height]);
@@ -78,10 +86,10 @@ impl Kind {
                         *v = value(at, c);
                     }
                 }
-                self.encode(&texels, n)
+                Ok(self.encode(&texels, n))
             })
             .collect();
-        encoded.concat()
+        Ok(encoded?.concat())
     }
 
     fn encode(self, texels: &[[f64; 3]; TEXELS], n: usize) -> Vec<u8> {

@@ -16,6 +16,7 @@ pub use fresnel::Fresnel;
 
 use super::{Brdf, Functional, Param, ParamError, Params, Preset, Sample};
 use crate::integrate::{BATCH, Chart, Estimate, FacetLobe, Nodes};
+use crate::math::figures::exact;
 use crate::math::frame;
 use crate::terms::smith::Ndf;
 use glam::{DVec2, DVec3};
@@ -229,7 +230,11 @@ pub fn alphas(model: &'static str, params: &Params) -> Result<[f64; 2], ParamErr
     if (x > 0.0) == (y > 0.0) {
         Ok([x, y])
     } else {
-        let why = format!("alpha_x = {x} and alpha_y = {y}: give both a width, or neither (the mirror)");
+        let why = format!(
+            "alpha_x = {} and alpha_y = {}: give both a width, or neither (the mirror)",
+            exact(x),
+            exact(y)
+        );
         Err(ParamError::Together { model, why })
     }
 }

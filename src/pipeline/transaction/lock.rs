@@ -96,6 +96,12 @@ impl FolderLock {
         }
     }
 
+    /// What the drop does, for a process that is ended while it holds the lock.
+    pub(super) fn ending(&self) -> impl FnOnce() + Send + 'static {
+        let (path, made) = (self.path.clone(), self.made.clone());
+        move || leave(&path, &made)
+    }
+
     /// Makes the folder and those above it, and remembers which.
     fn make(&mut self, path: &Path) -> io::Result<()> {
         let missing = |p: &&Path| !p.as_os_str().is_empty() && fs::symlink_metadata(p).is_err();
@@ -110,14 +116,24 @@ impl FolderLock {
 impl Drop for FolderLock {
     fn drop(&mut self) {
         if self.file.is_some() {
-            // while it is locked: nobody else can have locked a file of this name
-            let _ = fs::remove_file(&self.path);
+            leave(&self.path, &[]);
         }
         self.file = None;
-        for folder in self.made.iter().rev() {
-            // not if something is in it, such as the outputs
-            let _ = fs::remove_dir(folder);
-        }
+        remove_empty(&self.made);
+    }
+}
+
+/// Removes the file of a lock that is held, and folders that were made.
+fn leave(path: &Path, made: &[PathBuf]) {
+    // while it is locked: nobody else can have locked a file of this name
+    let _ = fs::remove_file(path);
+    remove_empty(made);
+}
+
+fn remove_empty(made: &[PathBuf]) {
+    for folder in made.iter().rev() {
+        // not if something is in it, such as the outputs
+        let _ = fs::remove_dir(folder);
     }
 }
 

@@ -36,7 +36,7 @@ pub use lock::Waiting;
 pub use targets::check;
 
 use super::MANIFEST;
-use crate::cancel::Cancel;
+use crate::cancel::{AtEnd, Cancel};
 use crate::encode::atomic;
 use journal::{Entry, Journal, Paths};
 use lock::FolderLock;
@@ -82,6 +82,8 @@ pub struct Transaction<'a> {
     cancel: &'a Cancel,
     /// False if what is in the staging folder is needed by the next run.
     clear: bool,
+    /// What is to be done if the process is ended before this is dropped.
+    _word: AtEnd<'a>,
 }
 
 impl<'a> Transaction<'a> {
@@ -103,7 +105,16 @@ impl<'a> Transaction<'a> {
         let swept = atomic::sweep(folder).map_err(|source| error::folder(folder, source))?;
         check(folder, names)?;
         let recovered = recovered.or((swept > 0).then_some(Recovery::Discarded));
-        let begun = Transaction { paths, staged: Vec::new(), lock: Some(lock), cancel, clear: true };
+        let (rest, unlock) = (paths.clone(), lock.ending());
+        let word = cancel.at_end(move || {
+            // with a journal it is for the next run to say what becomes of it
+            if !rest.journal().exists() {
+                let _ = journal::clear(&rest);
+            }
+            unlock();
+        });
+        let lock = Some(lock);
+        let begun = Transaction { paths, staged: Vec::new(), lock, cancel, clear: true, _word: word };
         for part in [begun.paths.staging(), &begun.paths.new_folder(), &begun.paths.old_folder()] {
             fs::create_dir(part).map_err(|source| error::folder(folder, source))?;
         }
@@ -118,6 +129,7 @@ impl<'a> Transaction<'a> {
         if self.staged.iter().any(|e| e.name == name) {
             return Err(TransactionError::Twice { name: name.to_owned(), other: name.to_owned() });
         }
+        let _hold = self.cancel.hold();
         let write = || File::create(self.paths.new_file(name))?.write_all(bytes);
         write().map_err(|source| error::write(&self.paths.target(name), source))?;
         self.staged.push(Entry::of(name, bytes));

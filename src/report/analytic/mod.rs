@@ -12,9 +12,10 @@ mod split;
 mod table;
 
 pub use formula::Lang;
-pub use split::{DEGREES, split_sum, splits};
-pub use table::{Form, table};
+pub use split::{DEGREES, split_sum, split_sum_until, splits};
+pub use table::{Form, table, table_until};
 
+use crate::cancel::Cancelled;
 use crate::encode::EncodeError;
 use crate::tables::TexelError;
 use formula::Formula;
@@ -80,13 +81,18 @@ pub enum FitError {
         degree: usize,
     },
     /// A value to be met could not be integrated.
-    #[error("at {at}: {error}")]
+    #[error("at {at}: {}", .error.of(.channels.iter().map(String::as_str)))]
     Texel {
         /// The point.
         at: String,
+        /// Ids of the channels of the table.
+        channels: Vec<String>,
         /// Why.
         error: TexelError,
     },
+    /// Stopped from outside.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// An axis that code cannot compute.
     #[error(transparent)]
     Axis(#[from] EncodeError),

@@ -15,7 +15,9 @@
 
 use super::formula::{Formula, name, number, ratio};
 use super::{Fit, FitError, LINES, PRACTICAL_WEIGHT, STEPS, Sample, TOLERANCE};
+use crate::cancel::Cancel;
 use crate::encode::code::Expression;
+use crate::math::figures::short;
 use crate::math::rational::{self, Fitted, Point, Term, Terms};
 use crate::tables::Bound;
 use crate::verify::reconstruction::{PRACTICAL_ALPHA, PRACTICAL_MU};
@@ -82,6 +84,14 @@ struct Node {
 /// # Errors
 /// [`FitError`].
 pub fn split_sum(bound: &Bound, degree: usize) -> Result<Fit, FitError> {
+    split_sum_until(&Cancel::new(), bound, degree)
+}
+
+/// [`split_sum`], until it is stopped.
+///
+/// # Errors
+/// [`FitError`], [`FitError::Cancelled`] among them.
+pub fn split_sum_until(cancel: &Cancel, bound: &Bound, degree: usize) -> Result<Fit, FitError> {
     let spec = &bound.spec;
     let got = || format!("{} with {}", spec.kind.id, spec.layout.ids().collect::<Vec<_>>().join(", "));
     let (axes, decode) = decode(bound).ok_or_else(|| FitError::Table {
@@ -92,12 +102,16 @@ pub fn split_sum(bound: &Bound, degree: usize) -> Result<Fit, FitError> {
         got: format!("degree {degree}"),
         why: "there are degrees 1 to 5",
     })?;
-    let nodes = nodes(bound, axes, decode, 0.0)?;
+    let nodes = nodes(cancel, bound, axes, decode, 0.0)?;
     let pole = || FitError::Pole { degree };
     // every other node: errors are measured at all of them
     let fitted: Vec<&Node> = nodes.iter().step_by(2).collect();
-    let albedo = Albedo::new(&fitted, terms(parts.e)).ok_or_else(pole)?;
-    let (k_terms, k) = albedo.factor(&fitted, terms(parts.k), parts.power).ok_or_else(pole)?;
+    let albedo = Albedo::new(cancel, &fitted, terms(parts.e));
+    cancel.check()?;
+    let albedo = albedo.ok_or_else(pole)?;
+    let factor = albedo.factor(cancel, &fitted, terms(parts.k), parts.power);
+    cancel.check()?;
+    let (k_terms, k) = factor.ok_or_else(pole)?;
     let model = spec.model.as_ref().map_or("", |(info, _)| info.id);
     let [lo, hi] = spec.grid.axes()[axes[1]].domain.map(|v| spec.grid.axes()[axes[1]].quantity.to_base(v));
     let titles = [
@@ -106,7 +120,7 @@ pub fn split_sum(bound: &Bound, degree: usize) -> Result<Fit, FitError> {
     ];
     let results = ["scale", "bias", "E = scale + bias"].map(str::to_owned).to_vec();
     let mut samples: Vec<Sample> = nodes.iter().map(Node::sample).collect();
-    samples.extend(self::nodes(bound, axes, decode, 0.5)?.iter().map(Node::sample));
+    samples.extend(self::nodes(cancel, bound, axes, decode, 0.5)?.iter().map(Node::sample));
     let formula = albedo.formula(&k_terms, &k, parts.power);
     Fit::measured(formula, titles, (results, vec![[0.0, 1.0]; 3]), &samples).ok_or_else(pole)
 }
@@ -122,6 +136,7 @@ fn terms([above, below]: [Rows; 2]) -> Terms {
 /// On lines of `sqrt(mu (1 + alpha) / (mu + alpha))` and of roughness, and of mu and roughness, shifted by a part of their
 /// distance: the former are dense where mu is near alpha, the latter where it is not.
 fn nodes(
+    cancel: &Cancel,
     bound: &Bound,
     [mu_axis, alpha_axis]: [usize; 2],
     decode: Decode,
@@ -132,6 +147,7 @@ fn nodes(
     let axes = bound.spec.grid.axes();
     let [lo, hi] = axes[alpha_axis].domain.map(|v| axes[alpha_axis].quantity.to_base(v).sqrt());
     let one = |n: usize| {
+        cancel.check()?;
         let (x, roughness) = (place(n % lines), lo + (hi - lo) * place(n / lines % lines));
         let alpha = roughness * roughness;
         let mu = if n < lines * lines && alpha > 0.0 { x * x * alpha / (1.0 + alpha - x * x) } else { x };
@@ -142,9 +158,12 @@ fn nodes(
         let mut at = [0.0; 2];
         (at[mu_axis], at[alpha_axis]) = (mu, alpha);
         let texel = bound.baker.texel(&at, TOLERANCE);
-        let value = texel
-            .map_err(|error| FitError::Texel { at: format!("mu = {mu}, alpha = {alpha}"), error })?
-            .value;
+        let fault = |error| FitError::Texel {
+            at: format!("mu = {}, alpha = {}", short(mu), short(alpha)),
+            channels: bound.spec.layout.ids().map(str::to_owned).collect(),
+            error,
+        };
+        let value = texel.map_err(fault)?.value;
         let [e, bias] = decode(&value, mu);
         Ok(Some(Node { mu, alpha, e, bias, practical: mu >= PRACTICAL_MU && alpha >= PRACTICAL_ALPHA }))
     };
@@ -179,14 +198,14 @@ struct Albedo {
 }
 
 impl Albedo {
-    fn new(nodes: &[&Node], terms: Terms) -> Option<Albedo> {
+    fn new(cancel: &Cancel, nodes: &[&Node], terms: Terms) -> Option<Albedo> {
         let fit = |loss: bool| {
             let point = |n: &Node| {
                 let (base, factor) = if loss { (1.0, -n.v() * (1.0 - n.v())) } else { (0.0, 1.0) };
                 Point { at: [n.v(), n.alpha], base, factor, want: n.e, weight: n.weight(), slack: 0.0 }
             };
             let points: Vec<Point> = nodes.iter().copied().map(point).collect();
-            let fitted = rational::fit(&points, &terms, 1, STEPS)?;
+            let fitted = rational::fit(&points, &terms, 1, STEPS, cancel)?;
             Some(Albedo { terms: terms.clone(), fitted, loss })
         };
         let both = [true, false].into_iter().filter_map(fit);
@@ -194,7 +213,13 @@ impl Albedo {
     }
 
     /// k of the bias.
-    fn factor(&self, nodes: &[&Node], terms: Terms, power: usize) -> Option<(Terms, Fitted)> {
+    fn factor(
+        &self,
+        cancel: &Cancel,
+        nodes: &[&Node],
+        terms: Terms,
+        power: usize,
+    ) -> Option<(Terms, Fitted)> {
         let point = |n: &Node| {
             let at = [n.v(), n.alpha];
             let ratio = self.fitted.ratio(&self.terms, at);
@@ -210,7 +235,7 @@ impl Albedo {
             }
         };
         let points: Vec<Point> = nodes.iter().copied().map(point).collect();
-        let fitted = rational::fit(&points, &terms, power, STEPS)?;
+        let fitted = rational::fit(&points, &terms, power, STEPS, cancel)?;
         Some((terms, fitted))
     }
 

@@ -2,6 +2,7 @@
 
 use super::formula::{Formula, name, ratio};
 use super::{Fit, FitError, LINES, PRACTICAL_WEIGHT, STEPS, Sample, TOLERANCE};
+use crate::cancel::Cancel;
 use crate::encode::code::{Expression, coordinates};
 use crate::grid::layout::Point as Place;
 use crate::grid::table::{named, place as words};
@@ -51,6 +52,14 @@ struct Node {
 /// # Errors
 /// [`FitError`] for more axes, a degree outside [`Form::degrees`], or a texel without a value.
 pub fn table(bound: &Bound, form: Form, degree: usize) -> Result<Fit, FitError> {
+    table_until(&Cancel::new(), bound, form, degree)
+}
+
+/// [`table`], until it is stopped.
+///
+/// # Errors
+/// [`FitError`], [`FitError::Cancelled`] among them.
+pub fn table_until(cancel: &Cancel, bound: &Bound, form: Form, degree: usize) -> Result<Fit, FitError> {
     let spec = &bound.spec;
     let axes = spec.grid.axes();
     let [least, most] = form.degrees();
@@ -62,11 +71,12 @@ pub fn table(bound: &Bound, form: Form, degree: usize) -> Result<Fit, FitError> 
         let why = "polynomials have degrees 1 to 8, rational functions 1 to 5";
         return Err(FitError::Table { got: format!("degree {degree}"), why });
     }
-    let nodes = nodes(bound, 0.0)?;
+    let nodes = nodes(cancel, bound, 0.0)?;
     let channels: Vec<&ChannelInfo> = spec.layout.channels.iter().collect();
     let terms = Terms::of_degree(degree, axes.len(), form == Form::Rational);
     let fitted: Option<Vec<Fitted>> =
-        (0..channels.len()).into_par_iter().map(|c| channel(&nodes, c, &terms)).collect();
+        (0..channels.len()).into_par_iter().map(|c| channel(cancel, &nodes, c, &terms)).collect();
+    cancel.check()?;
     let pole = || FitError::Pole { degree };
     let formula = formula(bound, &terms, &fitted.ok_or_else(pole)?)?;
     let model = spec.model.as_ref().map_or_else(String::new, |(info, _)| format!(" of {}", info.id));
@@ -78,7 +88,7 @@ pub fn table(bound: &Bound, form: Form, degree: usize) -> Result<Fit, FitError> 
     let results = channels.iter().map(|c| c.id.to_owned()).collect();
     let ranges = channels.iter().map(|c| c.range).collect();
     let mut all = nodes;
-    all.extend(self::nodes(bound, 0.5)?);
+    all.extend(self::nodes(cancel, bound, 0.5)?);
     let sample = |n: Node| Sample {
         arguments: axes.iter().zip(n.place.values()).map(|(a, v)| a.quantity.from_base(*v)).collect(),
         want: n.value,
@@ -88,7 +98,7 @@ pub fn table(bound: &Bound, form: Form, degree: usize) -> Result<Fit, FitError> 
     Fit::measured(formula, titles, (results, ranges), &samples).ok_or_else(pole)
 }
 
-fn nodes(bound: &Bound, offset: f64) -> Result<Vec<Node>, FitError> {
+fn nodes(cancel: &Cancel, bound: &Bound, offset: f64) -> Result<Vec<Node>, FitError> {
     let grid = &bound.spec.grid;
     let channels = bound.spec.layout.channels.len();
     let two = grid.axes().len() > 1;
@@ -99,10 +109,16 @@ fn nodes(bound: &Bound, offset: f64) -> Result<Vec<Node>, FitError> {
     let last = (if two { LINES - 1 } else { 8 * (LINES - 1) }) as f64;
     let cuts = has_practical(grid);
     let one = |n: usize| {
+        cancel.check()?;
         let x = [n % lines, n / lines].map(|i| (i as f64 + offset) / last);
         let place = grid.at_coordinates(&x);
         let texel = bound.baker.texel(place.values(), TOLERANCE);
-        let value = texel.map_err(|error| FitError::Texel { at: words(&named(grid, &place)), error })?.value;
+        let fault = |error| FitError::Texel {
+            at: words(&named(grid, &place)),
+            channels: bound.spec.layout.ids().map(str::to_owned).collect(),
+            error,
+        };
+        let value = texel.map_err(fault)?.value;
         let practical = cuts && in_practical_domain(grid, &place);
         Ok(Node { x: if two { x } else { [x[0], 0.0] }, place, value: value[..channels].to_vec(), practical })
     };
@@ -110,7 +126,7 @@ fn nodes(bound: &Bound, offset: f64) -> Result<Vec<Node>, FitError> {
     (0..count).into_par_iter().map(one).collect()
 }
 
-fn channel(nodes: &[Node], c: usize, terms: &Terms) -> Option<Fitted> {
+fn channel(cancel: &Cancel, nodes: &[Node], c: usize, terms: &Terms) -> Option<Fitted> {
     let point = |n: &Node| Point {
         at: n.x,
         base: 0.0,
@@ -120,7 +136,7 @@ fn channel(nodes: &[Node], c: usize, terms: &Terms) -> Option<Fitted> {
         slack: 0.0,
     };
     let points: Vec<Point> = nodes.iter().map(point).collect();
-    rational::fit(&points, terms, 1, STEPS)
+    rational::fit(&points, terms, 1, STEPS, cancel)
 }
 
 fn formula(bound: &Bound, terms: &Terms, fitted: &[Fitted]) -> Result<Formula, FitError> {
