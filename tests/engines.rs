@@ -16,6 +16,8 @@ mod compare;
 mod files;
 #[path = "engines/interfaces.rs"]
 mod interfaces;
+#[path = "engines/places.rs"]
+mod places;
 #[path = "engines/registry.rs"]
 mod registry;
 #[path = "engines/suggest.rs"]

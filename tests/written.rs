@@ -1,0 +1,11 @@
+//! What files and reports say of a table, against what it is: formulas of coordinates, errors as an engine reads, and that a
+//! file is replaced and never written over.
+#![allow(clippy::unwrap_used, reason = "test")]
+
+#[path = "written/formulas.rs"]
+mod formulas;
+#[path = "written/readers.rs"]
+mod readers;
+#[cfg(unix)]
+#[path = "written/replaced.rs"]
+mod replaced;
