@@ -9,10 +9,9 @@ use crate::cancel::Cancel;
 use crate::encode::{self, EncodeInput, Shape, Storage};
 use crate::grid::Provenance;
 use crate::grid::provenance::{AxisRecord, Encoding, Integration, RecipeId, SCHEMA, SizeRecord, Subject};
-use crate::models::source_lines;
 use crate::recipe::{Output, Plan, PlannedTable};
 use crate::tables::driver::{self, Options};
-use crate::tables::{Bound, Spec};
+use crate::tables::{Bound, Spec, source};
 use crate::verify::{self, Verified, reconstruction::Probe};
 use std::time::Instant;
 
@@ -181,7 +180,7 @@ fn provenance(plan: &Plan, planned: &PlannedTable, verified: &Verified) -> Prove
             title: format!("{}, {}", spec.kind.title, spec.layout.title()),
             formula: spec.kind.formula.to_owned(),
             params: spec.params.to_json(&spec.swept()),
-            sources: source_lines(spec.kind.sources),
+            sources: source::lines(spec),
         },
         model: model_subject(spec),
         axes: spec.grid.axes().iter().map(AxisRecord::new).collect(),
@@ -191,7 +190,7 @@ fn provenance(plan: &Plan, planned: &PlannedTable, verified: &Verified) -> Prove
             tolerance: planned.tolerance,
             largest_error: table.largest_error(),
             evaluations: table.total_evaluations(),
-            missed: driver::missed(table, planned.tolerance) as u64,
+            missed: verified.missed() as u64,
         },
         residuals: baker.residuals(table),
         encoding: None,
@@ -199,7 +198,8 @@ fn provenance(plan: &Plan, planned: &PlannedTable, verified: &Verified) -> Prove
         texels: None,
         size: planned.found.clone(),
         laws: verified.laws().to_vec(),
-        verified: verified.waived().is_empty(),
+        verified: verified.verified(),
+        tolerance_met: Some(verified.tolerance_met()),
         waived: verified.waived().to_vec(),
     }
 }

@@ -14,7 +14,7 @@ pub(crate) fn grid() -> Grid {
 }
 
 pub(crate) fn channel(id: &str) -> Channel {
-    Channel { id: id.to_owned(), meaning: format!("{id} = ∫ f µ dω"), range: [0.0, 1.0] }
+    Channel { id: id.to_owned(), meaning: format!("{id} = ∫ f µ dω"), range: [0.0, 1.0], role: String::new() }
 }
 
 /// A table with `value(i, x)` in value number `i`; x goes through (0, 1) without pattern.
