@@ -82,6 +82,7 @@ impl From<PipelineError> for Failure {
             PipelineError::Bake { error: BakeError::Missed { .. }, .. }
             | PipelineError::Size { .. }
             | PipelineError::Laws(_)
+            | PipelineError::Doubt(_)
             | PipelineError::Range { .. } => Exit::Failed,
             PipelineError::Bake { .. } | PipelineError::Files(TransactionError::Twice { .. }) => Exit::Input,
             PipelineError::Encode { .. } | PipelineError::Fit { .. } => Exit::Unsupported,
@@ -90,6 +91,11 @@ impl From<PipelineError> for Failure {
             _ => Exit::Internal,
         };
         let mut message = error.to_string();
+        if let PipelineError::Doubt(findings) = &error {
+            for finding in findings {
+                message.push_str(&format!("\n  {finding}"));
+            }
+        }
         if let PipelineError::Laws(findings) = &error {
             for finding in findings {
                 message.push_str(&format!("\n  {finding}"));

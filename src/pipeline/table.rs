@@ -12,7 +12,7 @@ use crate::grid::provenance::{AxisRecord, Encoding, Integration, RecipeId, SCHEM
 use crate::recipe::{Output, Plan, PlannedTable};
 use crate::tables::driver::{self, Options};
 use crate::tables::{Bound, Spec, source};
-use crate::verify::{self, Verified, reconstruction::Probe};
+use crate::verify::{self, Finding, Verified, reconstruction::Probe};
 use std::time::Instant;
 
 /// Most points at which a table is compared with fresh integrals between its texels.
@@ -21,6 +21,8 @@ const COMPARED: usize = 1 << 16;
 /// A table ready to be written.
 pub(super) struct Made {
     pub(super) record: TableRecord,
+    /// What was found that does not stop a bake.
+    pub(super) warnings: Vec<Finding>,
     pub(super) files: Vec<(String, Vec<u8>)>,
 }
 
@@ -50,9 +52,10 @@ pub(super) fn make(
         .map_err(|error| PipelineError::Bake { table: name.to_owned(), error })?;
     let bake_seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let (verified, let_through) = verify::check(&planned.bound, table, planned.tolerance, &planned.waivers)
-        .map_err(PipelineError::Laws)?;
-    for finding in &let_through {
+    let checked = verify::check_until(cancel, &planned.bound, table, planned.tolerance, &planned.waivers)
+        .map_err(|stopped| PipelineError::Bake { table: name.to_owned(), error: stopped.into() })?;
+    let (verified, warnings) = checked.map_err(PipelineError::Laws)?;
+    for finding in &warnings {
         progress.event(&Event::Finding { table: name, finding });
     }
     let provenance = provenance(plan, planned, &verified);
@@ -62,6 +65,7 @@ pub(super) fn make(
             size: spec.grid.axes().iter().map(|a| a.len).collect(),
             files: Vec::new(),
         },
+        warnings,
         files: Vec::new(),
     };
     let names = super::file_names(planned);
@@ -248,6 +252,9 @@ fn finished<'a>(
         reconstruction: reconstruction.collect(),
         evaluations: integration.evaluations,
         missed: integration.missed,
+        laws: &record.provenance.laws,
+        tolerance_met: integration.missed == 0,
+        verified: record.provenance.verified,
         bake_seconds,
         check_seconds,
     }

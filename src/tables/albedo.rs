@@ -47,7 +47,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Free(&[]),
     model: ModelUse::Any("ggx"),
     params: &[],
-    laws: &["finite", "range", "energy", "cross-check", "reciprocity"],
+    laws: &["finite", "range", "energy", "cross-check", "reciprocity", "honest"],
     axes: default_axes,
     notes: "Axes: mu, phi (the view azimuth, for anisotropic models), and any number parameter of the model (alpha or roughness, f0, \
         eta, ...). t wants a model that transmits, inside one with eta; axes f0_root4 and f0_root4_inverse spread eta above and \

@@ -41,7 +41,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Free(&[R_INSIDE, T_INSIDE]),
     model: ModelUse::Any("ggx"),
     params: &[],
-    laws: &["finite", "range", "energy", "reciprocity"],
+    laws: &["finite", "range", "energy", "reciprocity", "honest"],
     axes: default_axes,
     notes: "Integrated directly, not from a baked E table: no interpolation error enters. Axes: any number parameter of the model.",
     bind,

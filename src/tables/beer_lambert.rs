@@ -59,7 +59,7 @@ pub static INFO: TableInfo = TableInfo {
         sigma("sigma_g", "extinction, green", 0.0565),
         sigma("sigma_b", "extinction, blue", 0.00922),
     ],
-    laws: &["finite", "range", "monotone"],
+    laws: &["finite", "range", "monotone", "honest"],
     axes: default_axes,
     notes: "The defaults are pure water at 650, 550 and 450 nm, d in metres: with fresnel-dielectric at eta 1.333 all that clear water needs. \
         d runs along the refracted ray; it is not the vertical depth.",

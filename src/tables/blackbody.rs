@@ -72,7 +72,7 @@ pub static INFO: TableInfo = TableInfo {
             Preset::Value(2000.0),
         )
     }],
-    laws: &["range"],
+    laws: &["range", "honest"],
     axes: default_axes,
     notes: "Fire is 1000 to 2000 K, a lamp 2856, daylight about 6500. Below 800 K the fit of the eye in the far red decides the hue.",
     bind,

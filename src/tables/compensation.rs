@@ -64,7 +64,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Free(&[]),
     model: ModelUse::Split("ggx"),
     params: &[],
-    laws: &["finite", "range", "reciprocity", "complement"],
+    laws: &["finite", "range", "reciprocity", "complement", "honest"],
     axes: default_axes,
     notes: "E is that of F = 1. The errors of E and E_avg are carried through to each channel. lobe grows without bound where mu and \
         alpha go to 0 together (2.8 at alpha = 0.01): give its axis an end. F_ms of a colour is a factor of the shader: F_avg^2 E_avg / \

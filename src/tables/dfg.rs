@@ -138,7 +138,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Free(&[F82_X16, DIFFUSE_HDRP, DIFFUSE_FROSTBITE]),
     model: ModelUse::Split("ggx"),
     params: &[],
-    laws: &["finite", "range", "energy", "split", "cross-check", "reciprocity"],
+    laws: &["finite", "range", "energy", "split", "cross-check", "reciprocity", "honest"],
     axes: default_axes,
     notes: "alpha = 0 is the mirror: scale = 1 - (1 - mu)^5, bias = (1 - mu)^5. cloth grows as 1 / sqrt(2 pi alpha) where mu and \
         alpha go to 0 (9 in Filament's first texel), and diffuse exceeds 1 on rough surfaces at grazing: half floats hold them, \

@@ -53,7 +53,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: profile::PARAMS,
-    laws: &["finite", "range", "total", "monotone"],
+    laws: &["finite", "range", "total", "monotone", "honest"],
     axes: default_axes,
     notes: profile::NOTES,
     bind,

@@ -51,7 +51,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: &PARAMS,
-    laws: &["finite", "range", "total", "monotone"],
+    laws: &["finite", "range", "total", "monotone", "honest"],
     axes: default_axes,
     notes: profile::NOTES,
     bind,

@@ -31,7 +31,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: profile::PARAMS,
-    laws: &["finite", "range", "monotone"],
+    laws: &["finite", "range", "monotone", "honest"],
     axes: default_axes,
     notes: "u = 1 is infinitely far and counts as 1 - 2^-53. The slope grows towards both ends; the default axis ends at 0.999.",
     bind,

@@ -82,7 +82,7 @@ pub static INFO: TableInfo = TableInfo {
         Param::number("n", "n", "of metal index: real part", [0.0, 1e3], Preset::Value(0.2)),
         Param::number("k", "k", "of metal index: extinction coefficient", [0.0, 1e3], Preset::Value(3.4)),
     ],
-    laws: &["range"],
+    laws: &["range", "honest"],
     axes: default_axes,
     notes: "n and k of a metal are linear between its measured rows, 20 to 40 nm apart. Axes: mu, and with metal = index also n and k.",
     bind,

@@ -62,7 +62,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Free(&[]),
     model: ModelUse::None,
     params: &[],
-    laws: &["finite", "range", "fresnel-reversible"],
+    laws: &["finite", "range", "fresnel-reversible", "honest"],
     axes: default_axes,
     notes: "Closed form: the integration error is rounding. Bilinear reading loses an order at the critical angle, where F has a \
         vertical tangent; put the eta axis on one side of 1. Both-sides layouts want eta > 1.",

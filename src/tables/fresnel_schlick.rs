@@ -62,7 +62,7 @@ pub static INFO: TableInfo = TableInfo {
         Param::number("q", "q", "of lazanyi: exponent of the dip", [0.01, 100.0], Preset::Value(6.0)),
         Param::number("eta", "eta", "of dielectric: relative index", [1e-3, 1e3], Preset::Value(1.5)),
     ],
-    laws: &["range"],
+    laws: &["range", "honest"],
     axes: default_axes,
     notes: "Not exact Fresnel: the plain form is off by up to 0.060 at eta 1.33, 0.036 at 1.5, 0.082 at 2.5. Axes: mu, and any number of its own (f0, n, k, eta).",
     bind,

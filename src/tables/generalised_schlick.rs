@@ -56,7 +56,7 @@ pub static INFO: TableInfo = TableInfo {
         Param::number("exponent", "e", "exponent, for curve = power", [0.0, 5e4], Preset::Value(5.0)),
         Param::number("eta", "eta", "relative index, for curve = dielectric", [1.0, 1e3], Preset::Value(1.5)),
     ],
-    laws: &["finite", "range", "reciprocity"],
+    laws: &["finite", "range", "reciprocity", "honest"],
     axes: default_axes,
     notes: "Sweep exponent (or schlick_z, exponent = 5 (1 - z) / z) or eta (or f0_root4) on a third axis. With e = 5 the part is the \
         bias of `dfg`. At eta = 1 nothing is reflected and s is 0. visible takes the sampler of the model, which draws visible normals \

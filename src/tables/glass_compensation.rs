@@ -60,7 +60,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Free(&[]),
     model: ModelUse::Any("ggx-glass"),
     params: &[],
-    laws: &["finite", "range", "reciprocity", "complement"],
+    laws: &["finite", "range", "reciprocity", "complement", "honest"],
     axes: default_axes,
     notes: "Wants a model with eta that transmits (ggx-glass, beckmann-glass). Means and shares do not depend on mu: a table of them \
         alone is `average-albedo`, layout both-sides. From inside, total reflection makes the integrals dear: keep the tables small. \

@@ -68,7 +68,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Layouts,
     model: ModelUse::Any("ggx"),
     params: &[],
-    laws: &["range", "monotone", "total"],
+    laws: &["range", "monotone", "total", "honest"],
     axes: default_axes,
     notes: "u = 0 is the normal, u = 1 the horizon. Axes: u, v, mu, phi (the view azimuth, for anisotropic models) and any number parameter of the model. \
         A light reflected below the horizon does not exist here: the density is that of the reflected light alone.",

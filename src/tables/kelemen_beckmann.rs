@@ -34,7 +34,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: &[],
-    laws: &["finite", "range"],
+    laws: &["finite", "range", "normalised", "honest"],
     axes: default_axes,
     notes: "m below 1/32 does not fit: the texel at mu_m = 1 would exceed 1, which is a finding, not a clamp.",
     bind,

@@ -64,7 +64,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Free(&[]),
     model: ModelUse::Any("ggx"),
     params: &[],
-    laws: &["finite", "range", "energy", "cross-check", "reciprocity"],
+    laws: &["finite", "range", "energy", "cross-check", "reciprocity", "honest"],
     axes: || axes(0.0),
     notes: "Of a model with a Fresnel factor that can be split off, f is taken without it. The sphere channel is not a function of view and \
         roughness: it sits on the texture's own two coordinates, whatever the axes are, and a clamp on an axis must not \

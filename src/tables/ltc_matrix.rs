@@ -106,7 +106,7 @@ pub static INFO: TableInfo = TableInfo {
     ]),
     model: ModelUse::Any("ggx"),
     params: &[],
-    laws: &["range", "lobe", "reciprocity"],
+    laws: &["range", "energy", "lobe", "cross-check", "reciprocity", "honest"],
     axes: || super::ltc_magnitude::axes(LEAST_ROUGHNESS),
     notes: "Errors are those of the best matrix, not of its lobe: how well the lobe fits is in the channels ltc.l3 and ltc.variation and, as largest \
         and mean, in every file. Broad lobes leave the matrix loose, so entries cost more than fits: ask for 1e-3, not less. A \

@@ -49,7 +49,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: &[DISTRIBUTION],
-    laws: &["finite", "range", "monotone"],
+    laws: &["finite", "range", "monotone", "honest"],
     axes: default_axes,
     notes: "G1 falls to 0 at the horizon on the scale mu ~ alpha: couple the axis of mu to alpha, as the default axes do.",
     bind,

@@ -47,7 +47,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Free(&[]),
     model: ModelUse::None,
     params: &[Param::choice("distribution", "which distribution", &["ggx", "beckmann"])],
-    laws: &["finite", "range", "normalised"],
+    laws: &["finite", "range", "normalised", "honest"],
     axes: default_axes,
     notes: "The peak has the width alpha: spread mu_m with `one-minus-power` (fine near mu_m = 1). At alpha -> 0 no fixed axis resolves it. \
         The relative form of Beckmann reaches 4 / e = 1.47 at alpha = 1, off the normal.",

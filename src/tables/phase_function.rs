@@ -71,7 +71,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: PARAMS,
-    laws: &["finite", "range", "total"],
+    laws: &["finite", "range", "total", "honest"],
     axes: default_axes,
     notes: "theta is the angle between the directions of travel: 0 is forward. Some renderers pass the cosine of two directions that both point away, \
         which has the other sign. Axes: deflection, and g.",

@@ -39,7 +39,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: PARAMS,
-    laws: &["range", "monotone"],
+    laws: &["range", "monotone", "honest"],
     axes: default_axes,
     notes: "u = 1 is forward. Axes: u, and g.",
     bind,

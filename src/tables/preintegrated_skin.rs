@@ -51,7 +51,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: &PARAMS,
-    laws: &["finite", "range", "total"],
+    laws: &["finite", "range", "total", "honest"],
     axes: default_axes,
     notes: "The row of curvature 0 is clamp(N.L) exactly. Penner's axes: ndotl from -1 to 1, curvature 1/r in 1/mm; lengths in mm. \
         Profile burley needs over = sphere: on a ring its 1/r makes both integrals diverge.",

@@ -86,7 +86,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: &[Param::number("r", "r", "roughness of the fibres, sigma = r^2", RANGE, Preset::Value(0.5))],
-    laws: &["finite", "range"],
+    laws: &["finite", "range", "cross-check"],
     axes: default_axes,
     notes: "Unit depth, density and albedo, black ground. The authors' table stores zeros for a and b below R = 3e-6; here they are \
         fitted down to R = 1e-7, and below that to light that was scattered once. Along the normal the lobe is round. Errors are those of \

@@ -54,7 +54,7 @@ pub static INFO: TableInfo = TableInfo {
         [0.0, 1.0],
         Preset::Value(1.0),
     )],
-    laws: &["finite", "range"],
+    laws: &["finite", "range", "honest"],
     axes: default_axes,
     notes: "Axis roughness is glTF's (Charlie's r = roughness^2), axis alpha or r is Charlie's own. The model need not be reciprocal: E belongs to the view. By default roughness is held at 0.27 \
         (r = 0.073) and above, the clamp of productions: below it E exceeds 1 at grazing, and a scaled base would be negative.",

@@ -47,7 +47,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: profile::PARAMS,
-    laws: &["finite", "range", "monotone"],
+    laws: &["finite", "range", "monotone", "honest"],
     axes: default_axes,
     notes: "The two layouts differ by a factor 2 in the exponent and are not interchangeable. Other profiles than Gaussians follow the same \
         reasoning: the part beyond d.",

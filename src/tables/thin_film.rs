@@ -62,7 +62,7 @@ pub static INFO: TableInfo = TableInfo {
         Param::number("k3", "k_3", "extinction coefficient below the film", [0.0, 100.0], Preset::Value(0.0)),
         Param::number("orders", "m", "of layout series: orders summed", [1.0, 100.0], Preset::Value(2.0)),
     ],
-    laws: &["range"],
+    laws: &["range", "honest"],
     axes: default_axes,
     notes: "Vacuum above, thickness in nm. Colours may leave [0, 1] a little: renderers clamp. Defaults: water on glass; soap n2 1.33 n3 1; \
         oil on water n2 1.5 n3 1.33; anodised titanium n2 2.5 n3 2.5 k3 3.4. Fringes of films above 2 um are finer than most grids.",

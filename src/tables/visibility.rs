@@ -52,7 +52,7 @@ pub static INFO: TableInfo = TableInfo {
         Param::choice("masking", "how the two directions go together", &["correlated", "separable"]),
         Param::number("alpha", "alpha", "width of the distribution", [0.0, 2.0], Preset::Value(0.25)),
     ],
-    laws: &["finite", "range"],
+    laws: &["finite", "range", "honest"],
     axes: default_axes,
     notes: "V is symmetric. Where both cosines are 0 the correlated form counts as 0: there is no reflection. Schlick's form is separable. \
         Axes: mu, mu_i and alpha or roughness.",

@@ -3,23 +3,25 @@
 
 use super::linear::Linear;
 use super::lobes::Lobes;
-use super::{Case, Law, Outcome, Watch, linear, seeds};
+use super::{Case, Law, Outcome, Watch, linear, seeds, walk};
 use crate::integrate::View;
 use crate::integrate::sobol::{ReplicateMean, replicate_mean};
 use crate::models::Brdf;
 use crate::tables::integral::Functional;
-use crate::tables::place;
 use crate::tables::role::Light;
+use crate::tables::{Role, place};
 use glam::{DVec2, DVec3};
 
 /// The law.
 pub static LAW: Law = Law {
     id: "cross-check",
-    statement: "the baked value agrees with sampling at scrambled Sobol points",
+    statement: "the baked value agrees with sampling at scrambled Sobol points, or with random walks",
     margin: "6 standard errors, plus 2 / N for tails that N draws miss, plus the error estimate, minus the difference; smallest of 12 texels",
     code: 2004,
     formal: false,
-    concerns: |spec| spec.roles().into_iter().any(linear::is_linear),
+    concerns: |spec| {
+        spec.roles().into_iter().any(|role| linear::is_linear(role) || matches!(role, Role::FibreAlbedo(_)))
+    },
     check: |case| check(case, 0x51ed),
 };
 
@@ -30,6 +32,9 @@ const POINTS: u32 = 512;
 /// What N draws may have missed: tails that are hit less than once in N, with weights of about 1, do not show in the
 /// standard error (at alpha = 0.002 the rays lost at the horizon are three in a million).
 const UNSEEN: f64 = 2.0 / (REPLICATES * POINTS) as f64;
+
+/// Walks through a layer.
+const WALKS: u32 = 8192;
 
 /// Texels that are checked.
 const TEXELS: usize = 12;
@@ -88,8 +93,11 @@ fn sampled(model: &dyn Brdf, view: View, channel: &Linear, seed: u64) -> Replica
 pub(super) fn check(case: &Case<'_>, seed: u64) -> Outcome {
     let lobes = Lobes::new(case.spec());
     let mut watch = Watch::default();
-    for (i, texel) in seeds::texels(case.table, TEXELS, 0xc705).into_iter().enumerate() {
+    for (i, texel) in
+        seeds::texels(case.table, TEXELS, 0xc705).into_iter().enumerate().take_while(|_| case.goes_on())
+    {
         let point = case.table.grid.texel(texel);
+        walks(case, texel, seed + i as u64, &mut watch);
         for (c, role) in case.spec().roles().into_iter().enumerate() {
             let Some(lobe) = role.lobe() else { continue };
             let view = lobes.view(lobe, point.values());
@@ -111,4 +119,26 @@ pub(super) fn check(case: &Case<'_>, seed: u64) -> Outcome {
         }
     }
     watch.outcome("no texel with a density")
+}
+
+/// Compares the albedo of a layer of fibres with random walks.
+fn walks(case: &Case<'_>, texel: usize, seed: u64, watch: &mut Watch) {
+    let spec = case.spec();
+    let point = case.table.grid.texel(texel);
+    for (c, channel) in spec.layout.channels.iter().enumerate() {
+        let Role::FibreAlbedo(scale) = channel.role else { continue };
+        let r = spec.axis("r").map_or_else(|| spec.params.number("r"), |i| point.values()[i]);
+        let Some(mu) = spec.axis("mu").map(|i| point.values()[i]) else { continue };
+        let found = walk::reflected(r * r, mu, WALKS, seed);
+        // a part of n walks that is near 0 or 1 still has the spread of one walk
+        let n = f64::from(WALKS);
+        let spread = ((found * (1.0 - found)).max(1.0 / n) / n).sqrt();
+        let code = |r: f64| scale.map_or(r, |scale| (r / scale).min(1.0));
+        let (v, e) = case.at(texel, c);
+        let apart = (v - code(found)).abs();
+        watch.see(6.0 * spread / scale.unwrap_or(1.0) + e - apart, || {
+            let place = place(&case.table.grid, texel);
+            format!("{} = {v:.6} against {:.6} +- {spread:.1e}, {place}", channel.id, code(found))
+        });
+    }
 }

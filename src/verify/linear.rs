@@ -2,7 +2,7 @@
 
 use crate::integrate::View;
 use crate::tables::integral::Functional;
-use crate::tables::role::{Light, Lobe, Side, Weight};
+use crate::tables::role::{Light, Lobe, Side};
 use crate::tables::{Role, Spec};
 
 /// Such a channel at a view.
@@ -48,16 +48,11 @@ pub(super) fn is_linear(role: Role) -> bool {
     matches!(role, Role::Albedo(..) | Role::Complement(..) | Role::Split(..) | Role::SplitRest(_))
 }
 
-/// The curve of [`Weight::Curve`] that the parameters of a kind name, at a point.
+/// The curve of [`Weight::Curve`](crate::tables::role::Weight::Curve) that the parameters of a kind name, at a point.
 pub(super) fn curve(spec: &Spec, at: &[f64]) -> Functional {
     let number = |id: &str| spec.axis(id).map_or_else(|| spec.params.number(id), |i| at[i]);
     match spec.params.choice("curve") {
         "dielectric" => Functional::Dielectric(number("eta")),
         _ => Functional::Power(number("exponent")),
     }
-}
-
-/// A part of a split albedo, whatever its weight.
-pub(super) fn is_split(role: Role) -> bool {
-    matches!(role, Role::Split(_, weight, _) if weight != Weight::Curve) || matches!(role, Role::SplitRest(_))
 }

@@ -45,14 +45,16 @@ fn check(case: &Case<'_>) -> Outcome {
         return Outcome::NotChecked("the channels make no matrix".to_owned());
     };
     let mut watch = Watch::default();
-    for texel in 0..case.table.grid.len() {
+    for texel in (0..case.table.grid.len()).take_while(|_| case.goes_on()) {
         let Some(m) = ltc_matrix::stored(&roles, case.table.at(texel)) else { continue };
         // NaN is no lobe
         if !(m.minor() > 0.0 && m.m22 > 0.0 && m.apply(glam::DVec3::ONE).is_finite()) {
             watch.see(f64::NEG_INFINITY, || format!("{m:?}, {}", place(&case.table.grid, texel)));
         }
     }
-    for (i, texel) in seeds::texels(case.table, TEXELS, 0x17c).into_iter().enumerate() {
+    for (i, texel) in
+        seeds::texels(case.table, TEXELS, 0x17c).into_iter().enumerate().take_while(|_| case.goes_on())
+    {
         let point = case.table.grid.texel(texel);
         let view = lobes.view(lobe, point.values());
         let (Some(model), Some(m)) = (

@@ -3,7 +3,7 @@
 use crate::integrate::View;
 use crate::models::Brdf;
 use crate::tables::role::{Lobe, Side};
-use crate::tables::{Role, Spec, sweep::Sweep};
+use crate::tables::{Spec, sweep::Sweep};
 
 /// The lobes of a table.
 #[derive(Debug)]
@@ -53,17 +53,4 @@ pub(super) fn of(spec: &Spec) -> Vec<Lobe> {
         }
     }
     lobes
-}
-
-/// The side that a channel is seen from.
-pub(super) fn side(role: Role) -> Side {
-    match role {
-        Role::Albedo(_, _, side)
-        | Role::Average(_, _, side)
-        | Role::Complement(_, side)
-        | Role::AverageComplement(_, side)
-        | Role::ReflectedShare(_, side)
-        | Role::Dielectric(_, side) => side,
-        _ => Side::Above,
-    }
 }

@@ -11,6 +11,7 @@ pub mod cross_check;
 pub mod energy;
 pub mod finding;
 pub mod finite;
+pub mod honest;
 mod linear;
 pub mod lobe;
 mod lobes;
@@ -26,7 +27,9 @@ pub mod split;
 pub mod survey;
 pub mod tolerance;
 pub mod total;
+mod walk;
 
+use crate::cancel::{Cancel, Cancelled};
 use crate::grid::Table;
 use crate::grid::provenance::{LawRecord, Waiver};
 use crate::tables::{Bound, Spec, driver};
@@ -47,6 +50,7 @@ pub static LAWS: &[&Law] = &[
     &cross_check::LAW,
     &complement::LAW,
     &reciprocity::LAW,
+    &honest::LAW,
 ];
 
 /// A law: what it says, of what, and how it is checked on a baked table.
@@ -77,9 +81,17 @@ pub struct Case<'a> {
     pub table: &'a Table,
     /// Tolerance that was asked for.
     pub tolerance: f64,
+    /// Set from outside to stop: what a law finds after that is thrown away.
+    pub cancel: &'a Cancel,
 }
 
 impl<'a> Case<'a> {
+    /// False once the check is to stop; loops of laws look at it.
+    #[must_use]
+    pub fn goes_on(&self) -> bool {
+        !self.cancel.is_set()
+    }
+
     /// Value and error estimate of a channel of a texel.
     #[must_use]
     pub fn at(&self, texel: usize, channel: usize) -> (f64, f64) {
@@ -164,13 +176,29 @@ pub fn check(
     tolerance: f64,
     waivers: &[Waiver],
 ) -> Result<(Verified, Vec<Finding>), Vec<Finding>> {
-    let case = Case { bound, table: &table, tolerance };
+    check_until(&Cancel::new(), bound, table, tolerance, waivers).unwrap_or_else(|Cancelled| Err(Vec::new()))
+}
+
+/// [`check`], until it is stopped.
+///
+/// # Errors
+/// [`Cancelled`]; within, what [`check`] returns.
+#[allow(clippy::type_complexity, reason = "the result of `check`, or none")]
+pub fn check_until(
+    cancel: &Cancel,
+    bound: &Bound,
+    table: Table,
+    tolerance: f64,
+    waivers: &[Waiver],
+) -> Result<Result<(Verified, Vec<Finding>), Vec<Finding>>, Cancelled> {
+    let case = Case { bound, table: &table, tolerance, cancel };
     let mut laws = Vec::new();
     let mut broken = Vec::new();
     let mut warnings = Vec::new();
     let mut waived = Vec::new();
     for law in declared(&bound.spec) {
         let outcome = (law.check)(&case);
+        cancel.check()?;
         match &outcome {
             Outcome::Held(_) => {}
             Outcome::NotChecked(why) => warnings.push(Finding::unchecked(law, why, &bound.spec)),
@@ -188,11 +216,11 @@ pub fn check(
         laws.push(outcome.record(law.id));
     }
     if !broken.is_empty() {
-        return Err(broken);
+        return Ok(Err(broken));
     }
     let missed = driver::missed(&table, tolerance);
     if missed > 0 {
         warnings.push(Finding::missed(missed, tolerance, &table, &bound.spec));
     }
-    Ok((Verified { table, laws, waived, missed }, warnings))
+    Ok(Ok((Verified { table, laws, waived, missed }, warnings)))
 }

@@ -96,6 +96,12 @@ impl Watch {
         self.checked
     }
 
+    /// Why the first value that could not be judged could not.
+    #[must_use]
+    pub fn why(&self) -> Option<&str> {
+        self.why.as_deref()
+    }
+
     /// Adds what was seen elsewhere; of equal margins the first is kept.
     pub fn join(&mut self, other: Watch) {
         if other.checked > 0 && (other.margin < self.margin || self.checked == 0) {

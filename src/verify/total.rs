@@ -9,7 +9,7 @@ use crate::tables::integral::{Functional, integrate};
 use crate::tables::phase_function::Phase;
 use crate::tables::profile::Profile;
 use crate::tables::role::{Lobe, Per, Side};
-use crate::tables::{Baker, Role, Spec, diffusion_profile, importance, place};
+use crate::tables::{Role, Spec, diffusion_profile, importance, place};
 use std::f64::consts::PI;
 
 /// The law.
@@ -87,7 +87,7 @@ fn skin(case: &Case<'_>) -> Outcome {
         let measure = |theta: f64| if sphere { libm::sin(theta) } else { 1.0 };
         let near = (3.0 * value).min(0.5);
         let breaks = [0.0, 0.5 * PI - near, 0.5 * PI, 0.5 * PI + near, PI];
-        let sum = add_up(&*case.bound.baker, &breaks, 3, case.tolerance, |theta| {
+        let sum = add_up(case, &breaks, 3, case.tolerance, |theta| {
             at[ndotl] = libm::cos(theta);
             (at.clone(), measure(theta))
         });
@@ -102,7 +102,7 @@ fn radial(case: &Case<'_>, per: Per) -> Outcome {
     let Ok(profile) = Profile::new(spec) else { return nothing() };
     let expected = diffusion_profile::factor(spec, &profile);
     let area = per == Per::Area;
-    let sum = add_up(&*case.bound.baker, &outwards(&profile), 3, case.tolerance, |r| {
+    let sum = add_up(case, &outwards(&profile), 3, case.tolerance, |r| {
         (vec![r], if area { 2.0 * PI * r } else { 1.0 })
     });
     let mut watch = Watch::default();
@@ -115,7 +115,7 @@ fn radial(case: &Case<'_>, per: Per) -> Outcome {
 /// `2 int L dx = 1`.
 fn kernel(case: &Case<'_>) -> Outcome {
     let Ok(profile) = Profile::new(&case.bound.spec) else { return nothing() };
-    let sum = add_up(&*case.bound.baker, &outwards(&profile), 3, case.tolerance, |x| (vec![x], 2.0));
+    let sum = add_up(case, &outwards(&profile), 3, case.tolerance, |x| (vec![x], 2.0));
     let mut watch = Watch::default();
     tighten(&mut watch, &sum, 0..3, 1.0, || "all offsets".to_owned());
     watch.outcome("no row")
@@ -136,7 +136,7 @@ fn sphere(case: &Case<'_>) -> Outcome {
         let near = [0.0, 1e-4, 1e-3, 1e-2, 0.1, 0.5];
         let breaks: Vec<f64> =
             near.into_iter().chain([PI / 2.0]).chain(near.into_iter().rev().map(|x| PI - x)).collect();
-        let sum = add_up(&*case.bound.baker, &breaks, 1, 1e-10, |theta| {
+        let sum = add_up(case, &breaks, 1, 1e-10, |theta| {
             let mut at = vec![0.0; spec.grid.axes().len()];
             if let (Some(i), Some(g)) = (axis, g) {
                 at[i] = g;
@@ -153,7 +153,7 @@ fn sphere(case: &Case<'_>) -> Outcome {
 fn albedo(case: &Case<'_>, lobe: Lobe) -> Outcome {
     let lobes = Lobes::new(case.spec());
     let mut watch = Watch::default();
-    for texel in seeds::texels(case.table, ROWS, 0x1a9b) {
+    for texel in seeds::texels(case.table, ROWS, 0x1a9b).into_iter().take_while(|_| case.goes_on()) {
         let point = case.table.grid.texel(texel);
         let Some(model) = lobes.build(lobe, point.values(), Side::Above) else { continue };
         let view = lobes.view(lobe, point.values());
@@ -227,7 +227,7 @@ struct Total {
 
 /// `int values(x) measure(x) dx` over the breaks; `place` gives the point of the grid and the measure.
 fn add_up(
-    baker: &dyn Baker,
+    case: &Case<'_>,
     breaks: &[f64],
     channels: usize,
     tolerance: f64,
@@ -238,7 +238,9 @@ fn add_up(
     let e = line::integrate(breaks, channels, tolerance, &mut |x, out| {
         let (at, measure) = place(x);
         largest_measure = largest_measure.max(measure);
-        match baker.texel(&at, tolerance) {
+        match case.bound.baker.texel(&at, tolerance) {
+            // what was stopped is thrown away: a NaN ends the sum soonest
+            _ if !case.goes_on() => out[..channels].fill(f64::NAN),
             Ok(texel) => {
                 for c in 0..channels {
                     out[c] = measure * texel.value[c];

@@ -1,0 +1,232 @@
+//! Values of a lobe at directions made anew, and directions that sample one: the baked direction is put into cumulative
+//! distributions that are added up here, and moved by what they miss.
+
+use super::quad::{self, Sum, WIDE};
+use super::{Asked, Truth};
+use crate::integrate::View;
+use crate::models::Brdf;
+use crate::tables::role::{Component, Lobe, Side};
+use crate::tables::{Role, Spec};
+use crate::verify::lobes::Lobes;
+use glam::DVec3;
+use std::collections::BTreeMap;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::sync::{Mutex, PoisonError};
+
+/// Roundings of a value in closed form.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Most panels of a sum over the polar angle, and of one over the azimuth.
+const MOST: [usize; 2] = [48, 64];
+
+/// The lobes of a table; its albedos by the sum over both angles, which texels of one view share.
+#[derive(Debug)]
+pub(super) struct Directions {
+    lobes: Lobes,
+    albedos: Mutex<BTreeMap<Vec<u64>, (f64, f64)>>,
+}
+
+/// A lobe seen from somewhere.
+struct Seen<'a> {
+    model: &'a dyn Brdf,
+    view: View,
+    wo: DVec3,
+}
+
+impl Seen<'_> {
+    /// Light at an angle to the normal and an azimuth from the view's.
+    fn light(&self, theta: f64, phi: f64) -> DVec3 {
+        let (sin, cos) = libm::sincos(theta);
+        let (sin_p, cos_p) = libm::sincos(self.view.phi + phi);
+        DVec3::new(sin * cos_p, sin * sin_p, cos.max(0.0))
+    }
+
+    fn at(&self, theta: f64, phi: f64) -> f64 {
+        self.model.eval(self.wo, self.light(theta, phi))
+    }
+
+    /// `int f dphi` from the azimuth of the view to another one; it peaks there and half a turn on.
+    fn around(&self, theta: f64, end: f64, target: f64) -> Sum {
+        let halves = if end > PI { vec![0.0, 1.0, 1.0 + (end - PI) / PI] } else { vec![0.0, end / PI] };
+        quad::integrate(&halves, 1, &[target; WIDE], MOST[1], &mut |y| {
+            let turn = y.floor().min(1.0);
+            // the last part ends where it is told to, not at the end of its half
+            let (part, slope) = if turn < 1.0 && end < PI || turn >= 1.0 && end < TAU {
+                (y - turn, 1.0)
+            } else {
+                quad::spread(y - turn)
+            };
+            Sum::one(PI * slope * self.at(theta, PI * (turn + part)))
+        })
+    }
+
+    /// `int sin cos int f dphi dtheta` up to an angle.
+    fn up_to(&self, end: f64, target: f64) -> (f64, f64) {
+        let own = libm::acos(self.view.mu.clamp(0.0, 1.0));
+        let mut breaks = vec![0.0, end];
+        for near in [0.0, 0.02, 0.1, 0.4] {
+            breaks.extend([own - near, own + near].into_iter().filter(|b| *b > 0.0 && *b < end));
+        }
+        breaks.sort_by(f64::total_cmp);
+        let sum = quad::integrate(&breaks, 1, &[0.5 * target; WIDE], MOST[0], &mut |theta| {
+            let (sin, cos) = libm::sincos(theta);
+            let measure = sin * cos.max(0.0);
+            let mut row = self.around(theta, TAU, 0.3 * target / measure.max(1e-3));
+            row.scale(measure);
+            row
+        });
+        (sum.value[0], sum.error[0])
+    }
+}
+
+impl Directions {
+    pub(super) fn new(spec: &Spec) -> Directions {
+        Directions { lobes: Lobes::new(spec), albedos: Mutex::default() }
+    }
+
+    /// Roles of this file.
+    pub(super) fn truth(&self, role: Role, asked: &Asked<'_>, c: usize) -> Option<Truth> {
+        match role {
+            Role::Value(lobe, band) => {
+                let factor = asked.spec.params.number(["red", "green", "blue"][band.index()]);
+                let truth = self.value(lobe, asked)?;
+                Some(Truth { value: factor * truth.value, error: factor * truth.error })
+            }
+            Role::Direction(lobe, component) => self.direction(lobe, component, asked, asked.targets[c]),
+            Role::DirectionDensity(lobe) => self.density(lobe, asked, asked.targets[c]),
+            _ => None,
+        }
+    }
+
+    /// f at half and difference angles: `wi` by rotations, `wo` its mirror image.
+    fn value(&self, lobe: Lobe, asked: &Asked<'_>) -> Option<Truth> {
+        let at = |id: &str| asked.spec.axis(id).map(|i| asked.at[i]);
+        let (half, turn, apart) = (at("theta_h")?, at("phi_d")?, at("theta_d")?);
+        let model = self.lobes.build(lobe, asked.at, Side::Above)?;
+        let (sin, cos) = libm::sincos(apart);
+        let (sin_p, cos_p) = libm::sincos(turn);
+        let (sin_h, cos_h) = libm::sincos(half);
+        let before = DVec3::new(sin * cos_p, sin * sin_p, cos);
+        let wi = DVec3::new(
+            cos_h * before.x + sin_h * before.z,
+            before.y,
+            cos_h * before.z - sin_h * before.x,
+        );
+        let wh = DVec3::new(sin_h, 0.0, cos_h);
+        let wo = 2.0 * wi.dot(wh) * wh - wi;
+        let value = model.eval(wo, wi);
+        let error = ROUNDING * value.abs() + crate::verify::reciprocity::resolved(&*model, wo, wi);
+        Some(Truth { value, error })
+    }
+
+    /// The albedo of the view of a point, by sums over both angles.
+    fn albedo(&self, seen: &Seen<'_>, asked: &Asked<'_>, target: f64) -> (f64, f64) {
+        let numbers = |id: &str| asked.spec.axis(id).unwrap_or(usize::MAX);
+        let own = [numbers("u"), numbers("v")];
+        let rest = asked.at.iter().enumerate().filter(|(i, _)| !own.contains(i)).map(|(_, v)| v.to_bits());
+        let key: Vec<u64> = rest.chain([target.to_bits()]).collect();
+        let lock = || self.albedos.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = lock().get(&key) {
+            return *known;
+        }
+        let made = seen.up_to(FRAC_PI_2, target);
+        lock().insert(key, made);
+        made
+    }
+
+    fn density(&self, lobe: Lobe, asked: &Asked<'_>, target: f64) -> Option<Truth> {
+        let model = self.lobes.build(lobe, asked.at, Side::Above)?;
+        let seen = see(&*model, self.lobes.view(lobe, asked.at));
+        let wi = DVec3::from_slice(&stored(asked)?);
+        let f = seen.model.eval(seen.wo, wi) * wi.z;
+        let (rough, _) = self.albedo(&seen, asked, 1e-3);
+        let (albedo, error) = self.albedo(&seen, asked, (0.3 * target * rough * rough / f.max(1e-9)).max(1e-12));
+        let value = f / albedo;
+        Some(Truth { value, error: value * (error / albedo + ROUNDING) })
+    }
+
+    /// A component of the direction that two numbers choose.
+    fn direction(&self, lobe: Lobe, component: Component, asked: &Asked<'_>, target: f64) -> Option<Truth> {
+        let model = self.lobes.build(lobe, asked.at, Side::Above)?;
+        let seen = see(&*model, self.lobes.view(lobe, asked.at));
+        let at = |id: &str| asked.spec.axis(id).map(|i| asked.at[i]);
+        let (u, v) = (at("u")?, at("v")?);
+        let [theta, phi] = angles(asked, &seen)?;
+        // the polar angle: by what its distribution misses
+        let (sin, cos) = libm::sincos(theta);
+        let measure = sin * cos;
+        let slope = measure * seen.around(theta, TAU, 1e-9).value[0];
+        if slope.is_nan() || slope <= 0.0 {
+            return None;
+        }
+        let aim = (0.1 * target * slope).max(1e-13);
+        let (whole, whole_error) = self.albedo(&seen, asked, power_of_two(aim));
+        let (part, part_error) = seen.up_to(theta, aim);
+        let step = (part - u * whole) / slope;
+        let theta_error = (part_error + u * whole_error) / slope + bend(step, |x| {
+            let (sin, cos) = libm::sincos(theta - x);
+            sin * cos * seen.around(theta - x, TAU, 1e-9).value[0] / slope
+        });
+        let theta = theta - step;
+        // the azimuth at that angle
+        let density = seen.at(theta, phi);
+        if density.is_nan() || density <= 0.0 {
+            return None;
+        }
+        let aim = (0.1 * target * density).max(1e-13);
+        let (turn, some) = (seen.around(theta, TAU, aim), seen.around(theta, phi, aim));
+        let step = (some.value[0] - v * turn.value[0]) / density;
+        let moved = seen.around(theta + theta_error, phi, aim).value[0]
+            - v * seen.around(theta + theta_error, TAU, aim).value[0];
+        let phi_error = (some.error[0] + v * turn.error[0]) / density
+            + (moved / density - step).abs()
+            + bend(step, |x| seen.at(theta, phi - x) / density);
+        let phi = phi - step;
+        let wi = seen.light(theta, phi);
+        let apart = theta_error + libm::sin(theta) * phi_error + ROUNDING;
+        Some(match component {
+            Component::X => Truth { value: wi.x, error: apart },
+            Component::Y => Truth { value: wi.y, error: apart },
+            Component::Z => Truth { value: wi.z, error: (libm::sin(theta) + theta_error) * theta_error + ROUNDING },
+            Component::Azimuth => Truth { value: phi, error: phi_error + ROUNDING },
+        })
+    }
+}
+
+/// What the slope changes over a step is of second order.
+fn bend(step: f64, ratio: impl Fn(f64) -> f64) -> f64 {
+    let change = (ratio(step) - 1.0).abs().max((ratio(0.5 * step) - 1.0).abs());
+    step.abs() * if change.is_finite() { change } else { 1.0 }
+}
+
+/// The next smaller power of two, so that texels share what is made to it.
+fn power_of_two(x: f64) -> f64 {
+    libm::exp2(libm::log2(x).floor())
+}
+
+fn see(model: &dyn Brdf, view: View) -> Seen<'_> {
+    let wo = view.direction();
+    Seen { model, view, wo: DVec3::new(wo.x, wo.y, wo.z.max(1e-150)) }
+}
+
+/// The baked x, y and z.
+fn stored(asked: &Asked<'_>) -> Option<[f64; 3]> {
+    let of = |component: Component| {
+        let is = |role: Role| matches!(role, Role::Direction(_, c) if c == component);
+        asked.spec.roles().into_iter().position(is).map(|c| asked.baked[c])
+    };
+    Some([of(Component::X)?, of(Component::Y)?, of(Component::Z)?])
+}
+
+/// The baked angle to the normal and azimuth from the view's.
+fn angles(asked: &Asked<'_>, seen: &Seen<'_>) -> Option<[f64; 2]> {
+    if let Some([x, y, z]) = stored(asked) {
+        let phi = libm::atan2(y, x) - seen.view.phi;
+        return Some([libm::atan2(libm::hypot(x, y), z), phi - TAU * (phi / TAU).floor()]);
+    }
+    let of = |component: Component| {
+        let is = |role: Role| matches!(role, Role::Direction(_, c) if c == component);
+        asked.spec.roles().into_iter().position(is).map(|c| asked.baked[c])
+    };
+    Some([libm::acos(of(Component::Z)?.clamp(0.0, 1.0)), of(Component::Azimuth)?])
+}
