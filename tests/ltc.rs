@@ -4,7 +4,7 @@
 
 mod common;
 use brdfbake::grid::provenance::Waiver;
-use brdfbake::grid::{Axis, Direction, Texel, Warp};
+use brdfbake::grid::{Axis, Direction, Table, Texel, Warp};
 use brdfbake::integrate::View;
 use brdfbake::models::{self, Brdf, Params};
 use brdfbake::tables::ltc_fit::{self, Family, Fitted};
@@ -332,8 +332,7 @@ fn no_texel_is_worse_than_the_shipped_table() {
         let m = &forward[9 * texel..9 * texel + 9];
         let det = m[0] * m[8] - m[2] * m[6];
         let refit = Inverse { m11: m[8], m13: -m[2], m31: -m[6], m33: m[0], m22: det / m[4] };
-        let lobes =
-            [stored("over-m22", &table, texel), from_entries(&tab[4 * texel..4 * texel + 4]), refit];
+        let lobes = [stored("over-m22", &table, texel), from_entries(&tab[4 * texel..4 * texel + 4]), refit];
         let fits = lobes.map(|m| ltc_fit::judge(&*ggx, at.values()[1].into(), &m, 15.0).unwrap());
         for (k, f) in fits.iter().enumerate() {
             for (i, x) in [(2 * k, f.l3), (2 * k + 1, f.variation)] {

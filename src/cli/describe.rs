@@ -7,7 +7,7 @@ use crate::functions::{self, FunctionInfo};
 use crate::grid::Quantity;
 use crate::models::{self, Kind, ModelInfo, Param, Preset};
 use crate::recipe::{self, ENGINES, PRESETS};
-use crate::tables::{source, self, ModelUse, TableInfo};
+use crate::tables::{self, ModelUse, TableInfo, source};
 use crate::verify;
 
 /// Arguments of `describe`.

@@ -214,7 +214,8 @@ fn verdict(p: &Provenance) -> String {
         return "yes, although laws were waived: the file contradicts itself".to_owned();
     }
     if p.verified && p.schema < 2 {
-        return "yes, as metadata version 1 means it: a law that found nothing to check counts as held".to_owned();
+        return "yes, as metadata version 1 means it: a law that found nothing to check counts as held"
+            .to_owned();
     }
     if p.verified {
         return "yes".to_owned();
@@ -261,8 +262,7 @@ fn law(l: &LawRecord, p: &Provenance) -> String {
             let outcome = if result == LawResult::Held { "holds" } else { "BROKEN" };
             let margin = l.margin.map_or("beyond all numbers".to_owned(), number);
             let seen = if l.checked > 0 { format!(", {} judged", l.checked) } else { String::new() };
-            let unseen =
-                if l.unchecked > 0 { format!(", {} not{why}", l.unchecked) } else { String::new() };
+            let unseen = if l.unchecked > 0 { format!(", {} not{why}", l.unchecked) } else { String::new() };
             format!("{outcome}, margin {margin}{at}{seen}{unseen}{waived}")
         }
     }

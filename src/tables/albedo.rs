@@ -14,13 +14,25 @@ const fn channel(id: &'static str, meaning: &'static str, light: Light, side: Si
     ChannelInfo { id, meaning, range: [0.0, 1.0], role: Role::Albedo(Lobe::Model, light, side) }
 }
 
-const E: ChannelInfo = channel("e", "int f(wo, wi) mu_i dwi; of models that transmit R + T, what is not lost between facets", Light::All, Side::Above);
+const E: ChannelInfo = channel(
+    "e",
+    "int f(wo, wi) mu_i dwi; of models that transmit R + T, what is not lost between facets",
+    Light::All,
+    Side::Above,
+);
 const R: ChannelInfo = channel("r", "the reflected part", Light::Reflected, Side::Above);
-const T: ChannelInfo =
-    channel("t", "the part of the flux along wo that crosses the surface (without 1 / eta^2)", Light::Transmitted, Side::Above);
-const E_INSIDE: ChannelInfo = channel("e.inside", "R + T seen from inside, at 1 / eta", Light::All, Side::Inside);
-const R_INSIDE: ChannelInfo = channel("r.inside", "the reflected part seen from inside, at 1 / eta", Light::Reflected, Side::Inside);
-const T_INSIDE: ChannelInfo = channel("t.inside", "the part that crosses to the outside, at 1 / eta", Light::Transmitted, Side::Inside);
+const T: ChannelInfo = channel(
+    "t",
+    "the part of the flux along wo that crosses the surface (without 1 / eta^2)",
+    Light::Transmitted,
+    Side::Above,
+);
+const E_INSIDE: ChannelInfo =
+    channel("e.inside", "R + T seen from inside, at 1 / eta", Light::All, Side::Inside);
+const R_INSIDE: ChannelInfo =
+    channel("r.inside", "the reflected part seen from inside, at 1 / eta", Light::Reflected, Side::Inside);
+const T_INSIDE: ChannelInfo =
+    channel("t.inside", "the part that crosses to the outside, at 1 / eta", Light::Transmitted, Side::Inside);
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {

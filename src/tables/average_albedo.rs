@@ -18,13 +18,24 @@ const fn channel(id: &'static str, meaning: &'static str, light: Light, side: Si
     ChannelInfo { id, meaning, range: [0.0, 1.0], role: Role::Average(Lobe::Model, light, side) }
 }
 
-const E: ChannelInfo = channel("e-avg", "2 int_0^1 E(mu) mu dmu; of models that transmit the mean of R + T", Light::All, Side::Above);
+const E: ChannelInfo = channel(
+    "e-avg",
+    "2 int_0^1 E(mu) mu dmu; of models that transmit the mean of R + T",
+    Light::All,
+    Side::Above,
+);
 const R: ChannelInfo = channel("r-avg", "2 int_0^1 R(mu) mu dmu", Light::Reflected, Side::Above);
 const T: ChannelInfo = channel("t-avg", "2 int_0^1 T(mu) mu dmu", Light::Transmitted, Side::Above);
-const E_INSIDE: ChannelInfo = channel("e-avg.inside", "the mean of R + T seen from inside, at 1 / eta", Light::All, Side::Inside);
-const R_INSIDE: ChannelInfo = channel("r-avg.inside", "the mean of R seen from inside, at 1 / eta", Light::Reflected, Side::Inside);
-const T_INSIDE: ChannelInfo =
-    channel("t-avg.inside", "the mean of T seen from inside, at 1 / eta; t-avg / eta^2", Light::Transmitted, Side::Inside);
+const E_INSIDE: ChannelInfo =
+    channel("e-avg.inside", "the mean of R + T seen from inside, at 1 / eta", Light::All, Side::Inside);
+const R_INSIDE: ChannelInfo =
+    channel("r-avg.inside", "the mean of R seen from inside, at 1 / eta", Light::Reflected, Side::Inside);
+const T_INSIDE: ChannelInfo = channel(
+    "t-avg.inside",
+    "the mean of T seen from inside, at 1 / eta; t-avg / eta^2",
+    Light::Transmitted,
+    Side::Inside,
+);
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {

@@ -31,8 +31,7 @@ const fn beside(lobe: &'static OtherLobe) -> Role {
     Role::Albedo(Lobe::Other(lobe), Light::All, Side::Above)
 }
 
-const SCALE: ChannelInfo =
-    split("dfg.scale", "int (f/F) (1 - Fc) mu_i dwi", Weight::SchlickComplement);
+const SCALE: ChannelInfo = split("dfg.scale", "int (f/F) (1 - Fc) mu_i dwi", Weight::SchlickComplement);
 const BIAS: ChannelInfo = split("dfg.bias", "int (f/F) Fc mu_i dwi", Weight::Schlick);
 const FC: ChannelInfo = split("dfg.fc", "int (f/F) Fc mu_i dwi", Weight::Schlick);
 const TOTAL: ChannelInfo = split("dfg.total", "int (f/F) mu_i dwi = E(mu, alpha), white", Weight::One);

@@ -18,8 +18,10 @@ const fn channel(id: &'static str, meaning: &'static str, role: Role) -> Channel
     ChannelInfo { id, meaning, range: [0.0, 1.0], role }
 }
 
-const MEAN: ChannelInfo = channel("schlick.s", "int (f/F) s mu_i dwi / int (f/F) mu_i dwi", Role::SplitMean(Lobe::White));
-const PART: ChannelInfo = channel("schlick.part", "int (f/F) s mu_i dwi", Role::Split(Lobe::White, Weight::Curve, 1.0));
+const MEAN: ChannelInfo =
+    channel("schlick.s", "int (f/F) s mu_i dwi / int (f/F) mu_i dwi", Role::SplitMean(Lobe::White));
+const PART: ChannelInfo =
+    channel("schlick.part", "int (f/F) s mu_i dwi", Role::Split(Lobe::White, Weight::Curve, 1.0));
 const VISIBLE: ChannelInfo = channel(
     "schlick.s-visible",
     "int s p dwi, p the density of visible normals; what falls below the horizon counts as 0 (Cycles)",
@@ -30,7 +32,7 @@ const VISIBLE: ChannelInfo = channel(
 pub static INFO: TableInfo = TableInfo {
     id: "generalised-schlick",
     title: "Mean of a generalised Schlick factor",
-    formula: "s = (1 - v)^e, or (F(v, eta) - F0) / (1 - F0), v = wo.wh",
+    formula: "s = (1 - v)^e, or max(0, (F(v, eta) - F0) / (1 - F0)), v = wo.wh",
     sources: &[
         Source::new(cite::SCHLICK_1994, "Eq. 15 (F, with a free exponent)").when("curve", &["power"]),
         Source::new(cite::WALTER_2007, "Eq. 22 (F of a dielectric)").when("curve", &["dielectric"]),
@@ -123,11 +125,8 @@ impl Baker for Schlick {
         } else {
             all
         };
-        let visible = if self.parts.contains(&Part::Visible) {
-            visible(&*model, view, curve, tolerance)?
-        } else {
-            all
-        };
+        let visible =
+            if self.parts.contains(&Part::Visible) { visible(&*model, view, curve, tolerance)? } else { all };
         all.evaluations = part.evaluations.saturating_add(visible.evaluations);
         let [s, e] = [part.value[0], part.value[1]];
         for (c, wanted) in self.parts.iter().enumerate() {

@@ -27,13 +27,30 @@ const fn channel(id: &'static str, meaning: &'static str, role: Role) -> Channel
     ChannelInfo { id, meaning, range: [0.0, 1.0], role }
 }
 
-const MISSING: ChannelInfo = channel("ms.missing", "1 - (R + T)(mu) from above", Role::Complement(Lobe::Model, Side::Above));
-const MISSING_INSIDE: ChannelInfo = channel("ms.missing.inside", "1 - (R + T)(mu) from inside, at 1 / eta", Role::Complement(Lobe::Model, Side::Inside));
-const AVG: ChannelInfo = channel("ms.missing-avg", "2 int ms.missing mu dmu", Role::AverageComplement(Lobe::Model, Side::Above));
-const AVG_INSIDE: ChannelInfo = channel("ms.missing-avg.inside", "2 int ms.missing.inside mu dmu", Role::AverageComplement(Lobe::Model, Side::Inside));
-const REFLECT: ChannelInfo =
-    channel("ms.reflect", "a = 1 - x (1 - F_avg(eta)), the reflected share of what is added from above", Role::ReflectedShare(Lobe::Model, Side::Above));
-const REFLECT_INSIDE: ChannelInfo = channel("ms.reflect.inside", "a' = 1 - (1 - x)(1 - F_avg(1 / eta))", Role::ReflectedShare(Lobe::Model, Side::Inside));
+const MISSING: ChannelInfo =
+    channel("ms.missing", "1 - (R + T)(mu) from above", Role::Complement(Lobe::Model, Side::Above));
+const MISSING_INSIDE: ChannelInfo = channel(
+    "ms.missing.inside",
+    "1 - (R + T)(mu) from inside, at 1 / eta",
+    Role::Complement(Lobe::Model, Side::Inside),
+);
+const AVG: ChannelInfo =
+    channel("ms.missing-avg", "2 int ms.missing mu dmu", Role::AverageComplement(Lobe::Model, Side::Above));
+const AVG_INSIDE: ChannelInfo = channel(
+    "ms.missing-avg.inside",
+    "2 int ms.missing.inside mu dmu",
+    Role::AverageComplement(Lobe::Model, Side::Inside),
+);
+const REFLECT: ChannelInfo = channel(
+    "ms.reflect",
+    "a = 1 - x (1 - F_avg(eta)), the reflected share of what is added from above",
+    Role::ReflectedShare(Lobe::Model, Side::Above),
+);
+const REFLECT_INSIDE: ChannelInfo = channel(
+    "ms.reflect.inside",
+    "a' = 1 - (1 - x)(1 - F_avg(1 / eta))",
+    Role::ReflectedShare(Lobe::Model, Side::Inside),
+);
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
@@ -41,7 +58,10 @@ pub static INFO: TableInfo = TableInfo {
     title: "Energy compensation of a rough interface",
     formula: "1 - (R + T) from both sides, their means, and the reflected shares a, a'; x = m'_avg / (m_avg + m'_avg)",
     sources: &[
-        Source::new(cite::KULLA_CONTY_2017, "the slides on dielectrics (split derived again, slide not verified)"),
+        Source::new(
+            cite::KULLA_CONTY_2017,
+            "the slides on dielectrics (split derived again, slide not verified)",
+        ),
         Source::new(cite::WALTER_2007, "Eq. 20 and 21 (f of the interface)"),
     ],
     coordinates: &["mu"],
@@ -160,7 +180,11 @@ impl Glass {
         let view = self.sweep.view(at);
         let nothing = Estimate { value: [0.0; MAX_CHANNELS], error: [0.0; MAX_CHANNELS], evaluations: 0 };
         let one = |side: Side, model: &dyn Brdf| {
-            if self.parts.contains(&(Part::Missing, side)) { missing(model, view, tolerance) } else { Ok(nothing) }
+            if self.parts.contains(&(Part::Missing, side)) {
+                missing(model, view, tolerance)
+            } else {
+                Ok(nothing)
+            }
         };
         let above = one(Side::Above, &*models[0])?;
         let inside = one(Side::Inside, &*models[1])?;

@@ -43,8 +43,7 @@ pub static INFO: TableInfo = TableInfo {
     title: "LTC magnitude and Fresnel terms",
     formula: "magnitude = int f mu_i dwi, fresnel = int f (1 - wo.wh)^5 mu_i dwi",
     sources: &[
-        Source::new(cite::HEITZ_2016, "section 4 (the norm of a lobe)")
-            .of(|role| matches!(role, Role::Split(..))),
+        Source::new(cite::HEITZ_2016, "section 4 (the norm of a lobe)").of(|role| role != Role::SphereForm),
         Source::new(cite::SNYDER_1996, "irradiance of a spherical light")
             .of(|role| matches!(role, Role::SphereForm)),
     ],

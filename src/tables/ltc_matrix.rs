@@ -42,7 +42,11 @@ const L3: ChannelInfo = ChannelInfo {
     range: [0.0, 2.0],
     role: distance(Kind::Even, Distance::Cubic),
 };
-const VARIATION: ChannelInfo = unit("ltc.variation", "1/2 int |f mu_i / E - D|, E = int f mu_i", distance(Kind::Even, Distance::Variation));
+const VARIATION: ChannelInfo = unit(
+    "ltc.variation",
+    "1/2 int |f mu_i / E - D|, E = int f mu_i",
+    distance(Kind::Even, Distance::Variation),
+);
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
@@ -83,11 +87,7 @@ pub static INFO: TableInfo = TableInfo {
             channels: &[
                 entry("ltc.a", "a of the sheared lobe nearest to the model", Entry::A),
                 entry("ltc.b", "b of the sheared lobe nearest to the model", Entry::B),
-                unit(
-                    "ltc.reflectance",
-                    "int f mu_i dwi",
-                    Role::Albedo(Lobe::White, Light::All, Side::Above),
-                ),
+                unit("ltc.reflectance", "int f mu_i dwi", Role::Albedo(Lobe::White, Light::All, Side::Above)),
             ],
         },
     ],

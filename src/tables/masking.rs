@@ -28,12 +28,12 @@ pub static INFO: TableInfo = TableInfo {
     title: "Masking G1",
     formula: "Smith: G1 = 1 / (1 + Lambda(mu)); Schlick: G1 = mu / (mu (1 - k) + k)",
     sources: &[
-        Source::new(cite::HEITZ_2014, "Eq. 42 (Smith), Eq. 72 (Lambda of GGX)").when("distribution", &["ggx"]),
+        Source::new(cite::HEITZ_2014, "Eq. 42 (Smith), Eq. 72 (Lambda of GGX)")
+            .when("distribution", &["ggx"]),
         Source::new(cite::HEITZ_2014, "Eq. 42 (Smith), section 5.2 (Lambda of Beckmann)")
             .when("distribution", &["beckmann"]),
         Source::new(cite::SCHLICK_1994, "Eq. 19 (number recalled)").when("distribution", SCHLICK),
-        Source::new(cite::KARIS_2013, "Eq. 4 (k)")
-            .when("distribution", &["schlick-ibl", "schlick-analytic"]),
+        Source::new(cite::KARIS_2013, "Eq. 4 (k)").when("distribution", &["schlick-ibl", "schlick-analytic"]),
     ],
     coordinates: &["mu", "alpha"],
     layouts: &[Layout {

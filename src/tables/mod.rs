@@ -28,6 +28,7 @@ pub mod masking;
 mod memo;
 pub mod merl;
 pub mod ndf;
+mod parts;
 pub mod phase_function;
 pub mod phase_sampling;
 pub mod preintegrated_skin;

@@ -66,7 +66,8 @@ static PARAMS: [Param; 1 + profile::PARAMS.len()] = profile::with(Param::choice(
 
 /// Own sources, and those of profiles.
 static SOURCES: [Source; 2 + profile::SOURCES.len()] = profile::with_sources([
-    Source::new(cite::PENNER_2011, "the integral of the diffusion profile over a ring").when("over", &["ring"]),
+    Source::new(cite::PENNER_2011, "the integral of the diffusion profile over a ring")
+        .when("over", &["ring"]),
     Source::new(cite::PENNER_2011, "the idea, here over the sphere").when("over", &["sphere"]),
 ]);
 

@@ -33,8 +33,7 @@ const B: ChannelInfo = ChannelInfo {
     range: [-1.0, 1.0],
     role: Role::FibreLobe(Entry::B, None),
 };
-const R: ChannelInfo =
-    unit("sheen.reflectance", "R, the albedo of the layer", Role::FibreAlbedo(None));
+const R: ChannelInfo = unit("sheen.reflectance", "R, the albedo of the layer", Role::FibreAlbedo(None));
 const L3: ChannelInfo = ChannelInfo {
     id: "sheen.l3",
     meaning: "(int |f mu_i / R - D|^3 / int (f mu_i / R)^3)^(1/3), over dtheta dphi",
@@ -142,8 +141,13 @@ type Solved = Mutex<BTreeMap<(u64, usize), Arc<OnceLock<Option<Slab>>>>>;
 #[derive(Clone, Copy)]
 enum Part {
     /// a or b; coded: from where and over which length.
-    Lobe { b: bool, coded: Option<[f64; 2]> },
-    Reflectance { scale: Option<f64> },
+    Lobe {
+        b: bool,
+        coded: Option<[f64; 2]>,
+    },
+    Reflectance {
+        scale: Option<f64>,
+    },
     Distance,
 }
 

@@ -32,9 +32,7 @@ pub static INFO: TableInfo = TableInfo {
     id: "sheen-scaling",
     title: "Albedo scaling below a sheen",
     formula: "scaling = 1 - sheen E(mu), E = int f_sheen mu_i dwi",
-    sources: &[
-        Source::new(cite::KHR_SHEEN, "the albedo scaling technique"),
-    ],
+    sources: &[Source::new(cite::KHR_SHEEN, "the albedo scaling technique")],
     coordinates: &["mu"],
     layouts: &[
         Layout {

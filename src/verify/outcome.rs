@@ -41,7 +41,9 @@ impl Outcome {
         let law = law.to_owned();
         match self {
             Outcome::NotChecked(why) => LawRecord { law, why: Some(why), ..LawRecord::default() },
-            Outcome::Held(s) => LawRecord::seen(law, LawResult::Held, s.margin, s.at, [s.checked, s.unchecked], s.why),
+            Outcome::Held(s) => {
+                LawRecord::seen(law, LawResult::Held, s.margin, s.at, [s.checked, s.unchecked], s.why)
+            }
             Outcome::Broken(s) => {
                 LawRecord::seen(law, LawResult::Broken, s.margin, s.at, [s.checked, s.unchecked], s.why)
             }

@@ -12,7 +12,9 @@ pub static LAW: Law = Law {
     margin: "what roundings of the refracted sine change, plus the error estimate and 1e-14, minus the difference; smallest of 256 texels",
     code: 3002,
     formal: false,
-    concerns: |spec| channels(spec).next().is_some() && spec.axis("mu").is_some() && spec.axis("eta").is_some(),
+    concerns: |spec| {
+        channels(spec).next().is_some() && spec.axis("mu").is_some() && spec.axis("eta").is_some()
+    },
     check,
 };
 
@@ -44,7 +46,12 @@ fn check(case: &Case<'_>) -> Outcome {
             let back = [sin2 - step, sin2, sin2 + step].map(|sin2| back(sin2, eta, p));
             let resolved = (back[0] - back[1]).abs() + (back[2] - back[1]).abs();
             watch.see(resolved + error + 1e-14 - (f - back[1]).abs(), || {
-                format!("{} = {f:.12} against {:.12}, {}", case.table.channels[c].id, back[1], place(grid, texel))
+                format!(
+                    "{} = {f:.12} against {:.12}, {}",
+                    case.table.channels[c].id,
+                    back[1],
+                    place(grid, texel)
+                )
             });
         }
     }

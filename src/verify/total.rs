@@ -204,8 +204,7 @@ fn weights(case: &Case<'_>) -> Outcome {
     let weights = case.spec().roles().into_iter().enumerate();
     for (c, _) in weights.filter(|(_, role)| matches!(role, Role::GaussianWeight(_))) {
         let sum: f64 = (0..case.table.grid.len()).map(|t| case.table.values[t * channels + c]).sum();
-        watch
-            .see(ROUNDING - (sum - 1.0).abs(), || format!("{} sum to {sum}", case.table.channels[c].id));
+        watch.see(ROUNDING - (sum - 1.0).abs(), || format!("{} sum to {sum}", case.table.channels[c].id));
     }
     watch.outcome("no row")
 }

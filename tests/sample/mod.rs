@@ -2,7 +2,9 @@
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
 use brdfbake::encode::{EncodeInput, Encoder, Storage, quantise_table};
-use brdfbake::grid::provenance::{AxisRecord, Encoding, Integration, LawRecord, LawResult, RecipeId, Subject};
+use brdfbake::grid::provenance::{
+    AxisRecord, Encoding, Integration, LawRecord, LawResult, RecipeId, Subject,
+};
 use brdfbake::grid::{Axis, Channel, Grid, Provenance, Quantity, Table, Texel, Warp};
 
 /// Seven texels of sqrt(mu) at their centres, five of roughness.
@@ -14,7 +16,9 @@ pub(crate) fn grid() -> Grid {
 }
 
 pub(crate) fn channel(id: &str) -> Channel {
-    Channel { id: id.to_owned(), meaning: format!("{id} = ∫ f µ dω"), range: [0.0, 1.0], role: String::new() }
+    Channel {
+        id: id.to_owned(), meaning: format!("{id} = ∫ f µ dω"), range: [0.0, 1.0], role: String::new()
+    }
 }
 
 /// A table with `value(i, x)` in value number `i`; x goes through (0, 1) without pattern.

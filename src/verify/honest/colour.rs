@@ -211,7 +211,8 @@ impl Film {
                 let mut m = 1.0;
                 while m <= orders {
                     let power = libm::pow(a * b, 0.5 * m);
-                    sum += 2.0 * (star - through) * power * thin_film::sensitivity(channel, m * path, m * phase);
+                    sum +=
+                        2.0 * (star - through) * power * thin_film::sensitivity(channel, m * path, m * phase);
                     m += 1.0;
                 }
                 *value += 0.5 * sum;

@@ -84,18 +84,24 @@ impl Directions {
         Directions { lobes: Lobes::new(spec), albedos: Mutex::default() }
     }
 
-    /// Roles of this file.
-    pub(super) fn truth(&self, role: Role, asked: &Asked<'_>, c: usize) -> Option<Truth> {
-        match role {
+    /// Roles of this file; a direction is found once for all of its components.
+    pub(super) fn truths(&self, asked: &Asked<'_>, roles: &[Role]) -> Vec<Option<Truth>> {
+        let mut drawn: Option<Option<Drawn>> = None;
+        let target = asked.targets.iter().copied().fold(f64::INFINITY, f64::min);
+        let mut of = |(c, role): (usize, &Role)| match *role {
             Role::Value(lobe, band) => {
                 let factor = asked.spec.params.number(["red", "green", "blue"][band.index()]);
                 let truth = self.value(lobe, asked)?;
                 Some(Truth { value: factor * truth.value, error: factor * truth.error })
             }
-            Role::Direction(lobe, component) => self.direction(lobe, component, asked, asked.targets[c]),
+            Role::Direction(lobe, component) => {
+                let drawn = drawn.get_or_insert_with(|| self.direction(lobe, asked, target));
+                drawn.map(|d| d.component(component))
+            }
             Role::DirectionDensity(lobe) => self.density(lobe, asked, asked.targets[c]),
             _ => None,
-        }
+        };
+        roles.iter().enumerate().map(&mut of).collect()
     }
 
     /// f at half and difference angles: `wi` by rotations, `wo` its mirror image.
@@ -107,11 +113,8 @@ impl Directions {
         let (sin_p, cos_p) = libm::sincos(turn);
         let (sin_h, cos_h) = libm::sincos(half);
         let before = DVec3::new(sin * cos_p, sin * sin_p, cos);
-        let wi = DVec3::new(
-            cos_h * before.x + sin_h * before.z,
-            before.y,
-            cos_h * before.z - sin_h * before.x,
-        );
+        let wi =
+            DVec3::new(cos_h * before.x + sin_h * before.z, before.y, cos_h * before.z - sin_h * before.x);
         let wh = DVec3::new(sin_h, 0.0, cos_h);
         let wo = 2.0 * wi.dot(wh) * wh - wi;
         let value = model.eval(wo, wi);
@@ -140,62 +143,80 @@ impl Directions {
         let wi = DVec3::from_slice(&stored(asked)?);
         let f = seen.model.eval(seen.wo, wi) * wi.z;
         let (rough, _) = self.albedo(&seen, asked, 1e-3);
-        let (albedo, error) = self.albedo(&seen, asked, (0.3 * target * rough * rough / f.max(1e-9)).max(1e-12));
+        let (albedo, error) =
+            self.albedo(&seen, asked, (0.3 * target * rough * rough / f.max(1e-9)).max(1e-12));
         let value = f / albedo;
         Some(Truth { value, error: value * (error / albedo + ROUNDING) })
     }
 
-    /// A component of the direction that two numbers choose.
-    fn direction(&self, lobe: Lobe, component: Component, asked: &Asked<'_>, target: f64) -> Option<Truth> {
+    /// The direction that two numbers choose.
+    fn direction(&self, lobe: Lobe, asked: &Asked<'_>, target: f64) -> Option<Drawn> {
         let model = self.lobes.build(lobe, asked.at, Side::Above)?;
         let seen = see(&*model, self.lobes.view(lobe, asked.at));
         let at = |id: &str| asked.spec.axis(id).map(|i| asked.at[i]);
         let (u, v) = (at("u")?, at("v")?);
         let [theta, phi] = angles(asked, &seen)?;
-        // the polar angle: by what its distribution misses
-        let (sin, cos) = libm::sincos(theta);
-        let measure = sin * cos;
-        let slope = measure * seen.around(theta, TAU, 1e-9).value[0];
+        // the polar angle: by what its distribution misses; its slope need not be sharp
+        let slope_at = |theta: f64| {
+            let (sin, cos) = libm::sincos(theta);
+            sin * cos * seen.around(theta, TAU, f64::INFINITY).value[0]
+        };
+        let slope = slope_at(theta);
         if slope.is_nan() || slope <= 0.0 {
             return None;
         }
-        let aim = (0.1 * target * slope).max(1e-13);
+        let aim = (0.2 * target * slope).max(1e-13);
         let (whole, whole_error) = self.albedo(&seen, asked, power_of_two(aim));
         let (part, part_error) = seen.up_to(theta, aim);
         let step = (part - u * whole) / slope;
-        let theta_error = (part_error + u * whole_error) / slope + bend(step, |x| {
-            let (sin, cos) = libm::sincos(theta - x);
-            sin * cos * seen.around(theta - x, TAU, 1e-9).value[0] / slope
-        });
+        let theta_error =
+            (part_error + u * whole_error) / slope + bend(step, |x| slope_at(theta - x) / slope);
         let theta = theta - step;
         // the azimuth at that angle
         let density = seen.at(theta, phi);
         if density.is_nan() || density <= 0.0 {
             return None;
         }
-        let aim = (0.1 * target * density).max(1e-13);
-        let (turn, some) = (seen.around(theta, TAU, aim), seen.around(theta, phi, aim));
-        let step = (some.value[0] - v * turn.value[0]) / density;
-        let moved = seen.around(theta + theta_error, phi, aim).value[0]
-            - v * seen.around(theta + theta_error, TAU, aim).value[0];
-        let phi_error = (some.error[0] + v * turn.error[0]) / density
-            + (moved / density - step).abs()
+        let aim = (0.2 * target * density).max(1e-13);
+        let missed = |theta: f64| {
+            let (turn, some) = (seen.around(theta, TAU, aim), seen.around(theta, phi, aim));
+            (some.value[0] - v * turn.value[0], some.error[0] + v * turn.error[0])
+        };
+        let (miss, miss_error) = missed(theta);
+        let step = miss / density;
+        let phi_error = miss_error / density
+            + (missed(theta + theta_error).0 - miss).abs() / density
             + bend(step, |x| seen.at(theta, phi - x) / density);
         let phi = phi - step;
-        let wi = seen.light(theta, phi);
-        let apart = theta_error + libm::sin(theta) * phi_error + ROUNDING;
-        Some(match component {
-            Component::X => Truth { value: wi.x, error: apart },
-            Component::Y => Truth { value: wi.y, error: apart },
-            Component::Z => Truth { value: wi.z, error: (libm::sin(theta) + theta_error) * theta_error + ROUNDING },
-            Component::Azimuth => Truth { value: phi, error: phi_error + ROUNDING },
-        })
+        Some(Drawn { wi: seen.light(theta, phi), theta, phi, error: [theta_error, phi_error] })
     }
 }
 
-/// What the slope changes over a step is of second order.
+/// A direction with the errors of its angles.
+#[derive(Debug, Clone, Copy)]
+struct Drawn {
+    wi: DVec3,
+    theta: f64,
+    phi: f64,
+    error: [f64; 2],
+}
+
+impl Drawn {
+    fn component(&self, component: Component) -> Truth {
+        let ([theta, phi], sin) = (self.error, libm::sin(self.theta));
+        let apart = theta + sin * phi + ROUNDING;
+        match component {
+            Component::X => Truth { value: self.wi.x, error: apart },
+            Component::Y => Truth { value: self.wi.y, error: apart },
+            Component::Z => Truth { value: self.wi.z, error: (sin + theta) * theta + ROUNDING },
+            Component::Azimuth => Truth { value: self.phi, error: phi + ROUNDING },
+        }
+    }
+}
+
+/// What the slope changes over a step is of second order; it is itself known to 5 %.
 fn bend(step: f64, ratio: impl Fn(f64) -> f64) -> f64 {
-    let change = (ratio(step) - 1.0).abs().max((ratio(0.5 * step) - 1.0).abs());
+    let change = 0.05 + (ratio(step) - 1.0).abs().max((ratio(0.5 * step) - 1.0).abs());
     step.abs() * if change.is_finite() { change } else { 1.0 }
 }
 

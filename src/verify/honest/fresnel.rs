@@ -22,10 +22,7 @@ pub(super) struct Factors {
 impl Factors {
     /// Of unpolarised light.
     pub(super) fn mean(self) -> Rounded {
-        Truth {
-            value: 0.5 * (self.s.value + self.p.value),
-            error: 0.5 * (self.s.error + self.p.error),
-        }
+        Truth { value: 0.5 * (self.s.value + self.p.value), error: 0.5 * (self.s.error + self.p.error) }
     }
 
     /// Of a polarisation.
@@ -119,18 +116,18 @@ pub(super) fn of_form(spec: &Spec, clamped: bool, at: &[f64]) -> Option<Truth> {
     let f = match spec.params.choice("variant") {
         "generalised" => lerp(number("f0"), number("f90"), libm::pow(fall, number("exponent"))),
         "f82-tint" => {
-            let at_82 = lerp(number("f0"), 1.0, (6.0f64 / 7.0).powi(5));
-            let b = at_82 * (1.0 - number("tint")) * 7.0 * (7.0f64 / 6.0).powi(6);
+            let at_82 = lerp(number("f0"), 1.0, libm::pow(6.0 / 7.0, 5.0));
+            let b = at_82 * (1.0 - number("tint")) * 7.0 * libm::pow(7.0 / 6.0, 6.0);
             size += b;
-            lerp(number("f0"), 1.0, fall.powi(5)) - b * mu * fall.powi(6)
+            lerp(number("f0"), 1.0, libm::pow(fall, 5.0)) - b * mu * libm::pow(fall, 6.0)
         }
         "lazanyi" => {
             let (a, q) = (number("a"), number("q"));
             size += a;
-            lerp(normal(number("n"), number("k")), 1.0, fall.powi(5)) - a * mu * libm::pow(fall, q)
+            lerp(normal(number("n"), number("k")), 1.0, libm::pow(fall, 5.0)) - a * mu * libm::pow(fall, q)
         }
         "dielectric" => return Some(of_schlick_dielectric(mu, number("eta"))),
-        _ => lerp(number("f0"), number("f90"), fall.powi(5)),
+        _ => lerp(number("f0"), number("f90"), libm::pow(fall, 5.0)),
     };
     let value = if clamped { f.clamp(0.0, 1.0) } else { f };
     Some(Truth { value, error: 8.0 * f64::EPSILON * size })
@@ -138,11 +135,11 @@ pub(super) fn of_form(spec: &Spec, clamped: bool, at: &[f64]) -> Option<Truth> {
 
 /// Schlick's form of a dielectric: from the denser side in the refracted cosine.
 fn of_schlick_dielectric(mu: f64, eta: f64) -> Truth {
-    let f0 = ((eta - 1.0) / (eta + 1.0)).powi(2);
+    let f0 = libm::pow((eta - 1.0) / (eta + 1.0), 2.0);
     let sin2 = (1.0 - mu) * (1.0 + mu) / (eta * eta);
     let at = |sin2: f64| {
         let cos = if eta < 1.0 { (1.0 - sin2).max(0.0).sqrt() } else { mu };
-        let f = if eta < 1.0 && sin2 >= 1.0 { 1.0 } else { f0 + (1.0 - f0) * (1.0 - cos).powi(5) };
+        let f = if eta < 1.0 && sin2 >= 1.0 { 1.0 } else { f0 + (1.0 - f0) * libm::pow(1.0 - cos, 5.0) };
         [f, f]
     };
     spread(at, sin2, sin2).mean()

@@ -121,10 +121,13 @@ impl Wanted<'_> {
         let turn = (critical - wo.z * wo.z).max(0.0).sqrt() / self.view.sine();
         if self.eta < 1.0 && turn < 1.0 {
             let x = steep.inverse(1.0 - libm::acos(turn) / FRAC_PI_2);
-            breaks.extend((0..quarters / 2).flat_map(|half| [f64::from(2 * half) + 1.0 - x, f64::from(2 * half) + 1.0 + x]));
+            breaks.extend(
+                (0..quarters / 2)
+                    .flat_map(|half| [f64::from(2 * half) + 1.0 - x, f64::from(2 * half) + 1.0 + x]),
+            );
             breaks.sort_by(f64::total_cmp);
         }
-        let target = [0.25 * self.target; WIDE];
+        let target = [0.4 * self.target; WIDE];
         let share = 4.0 / f64::from(quarters);
         quad::integrate(&breaks, n, &target, MOST[0], &mut |x| {
             let quarter = x.floor().min(f64::from(quarters) - 1.0);
@@ -133,7 +136,7 @@ impl Wanted<'_> {
             let (part, slope) = steep.at(if odd { x - quarter } else { 1.0 - (x - quarter) });
             let psi = FRAC_PI_2 * (quarter + if odd { part } else { 1.0 - part });
             let measure = share * FRAC_PI_2 * slope;
-            let mut row = self.row(wo, psi, narrow, 0.25 * self.target / (TAU * slope.max(1e-2)), again);
+            let mut row = self.row(wo, psi, narrow, 0.4 * self.target / (TAU * slope.max(1e-2)), again);
             row.scale(measure);
             row
         })
@@ -172,10 +175,11 @@ impl Wanted<'_> {
         let crossing = self.flux == Flux::Crossing;
         // reflected rays are above the horizon where sin(2 t + p) > 0, p the angle of (along, mu)
         let end = if crossing { (d + FRAC_PI_2).min(FRAC_PI_2) } else { 0.5 * (PI - libm::atan2(mu, along)) };
-        if !(self.eta < 1.0) {
+        // an index that is none has no critical angle
+        let critical = ((1.0 - self.eta) * (1.0 + self.eta)).sqrt();
+        if self.eta.is_nan() || self.eta >= 1.0 {
             return vec![[0.0, end]];
         }
-        let critical = ((1.0 - self.eta) * (1.0 + self.eta)).sqrt();
         if critical >= r {
             return if crossing { Vec::new() } else { vec![[0.0, end]] };
         }
@@ -200,7 +204,8 @@ impl Wanted<'_> {
         if wi.z <= 0.0 {
             return Sum::ZERO;
         }
-        let f = if self.flux == Flux::Drawn { self.model.pdf(wo, wi) } else { self.model.eval(wo, wi) * wi.z };
+        let f =
+            if self.flux == Flux::Drawn { self.model.pdf(wo, wi) } else { self.model.eval(wo, wi) * wi.z };
         self.weighed(f * 4.0 * v * sin, v)
     }
 

@@ -15,9 +15,16 @@ const TARGET: f64 = 1e-14;
 enum Phase {
     Isotropic,
     Rayleigh,
-    Draine { g: f64, alpha: f64 },
+    Draine {
+        g: f64,
+        alpha: f64,
+    },
     /// Henyey and Greenstein, Draine, and the share of the latter.
-    Mixture { g: f64, other: [f64; 2], share: f64 },
+    Mixture {
+        g: f64,
+        other: [f64; 2],
+        share: f64,
+    },
 }
 
 impl Phase {
@@ -132,15 +139,20 @@ fn quantile(phase: Phase, u: f64, baked: f64, angle: bool) -> Option<Truth> {
     };
     let density = 2.0 * PI * phase.at(sine2, cosine2);
     let slope = if angle { -density * 2.0 * (sine2 * cosine2).max(0.0).sqrt() } else { density };
-    if slope.abs() <= 0.0 {
-        return None;
+    let lost = if forward { 1.0 - u } else { u };
+    let loose = error + f64::EPSILON * (1.0 + lost);
+    // at the poles the distribution rises with the square of the angle
+    let pole = ((miss.abs() + loose) / (0.5 * density)).sqrt();
+    if angle && (slope.abs() <= 0.0 || pole < loose / slope.abs()) {
+        return Some(Truth { value: baked, error: pole + ROUNDING });
     }
     let step = miss / slope;
     // what the density changes over the step is of second order
     let moved = if angle { step.abs() } else { step.abs() / 2.0 };
-    let change = |a: f64, b: f64| (phase.at(a.clamp(0.0, 1.0), b.clamp(0.0, 1.0)) / phase.at(sine2, cosine2) - 1.0).abs();
+    let change = |a: f64, b: f64| {
+        (phase.at(a.clamp(0.0, 1.0), b.clamp(0.0, 1.0)) / phase.at(sine2, cosine2) - 1.0).abs()
+    };
     let bend = change(sine2 + moved, cosine2 - moved).max(change(sine2 - moved, cosine2 + moved));
-    let lost = if forward { 1.0 - u } else { u };
-    let rounding = (error + f64::EPSILON * (1.0 + lost)) / slope.abs() + ROUNDING * baked.abs();
+    let rounding = loose / slope.abs() + ROUNDING * baked.abs();
     Some(Truth { value: baked - step, error: rounding + bend * step.abs() })
 }

@@ -12,6 +12,7 @@ mod colour;
 mod direction;
 mod fresnel;
 mod hemisphere;
+mod integrals;
 mod media;
 mod models;
 mod normals;
@@ -20,11 +21,10 @@ mod quad;
 mod sphere;
 mod strata;
 mod weight;
-#[cfg(test)]
-mod scratch;
 
 use super::{Case, Law, Outcome, Watch};
 use crate::tables::{Role, Spec, place};
+pub(super) use integrals::albedo;
 use rayon::prelude::*;
 
 /// The law.
@@ -118,7 +118,9 @@ impl<'a> Rules<'a> {
     fn truths(&self, asked: &Asked<'_>) -> Vec<Option<Truth>> {
         let roles = asked.spec.roles();
         let mut truths = self.models.truths(asked, &roles);
-        truths.resize(roles.len(), None);
+        for (truth, other) in truths.iter_mut().zip(self.directions.truths(asked, &roles)) {
+            *truth = truth.or(other);
+        }
         for (c, (role, truth)) in roles.into_iter().zip(&mut truths).enumerate() {
             if truth.is_none() {
                 *truth = fresnel::truth(role, asked.spec, asked.at)
@@ -126,8 +128,7 @@ impl<'a> Rules<'a> {
                     .or_else(|| media::truth(role, asked, c))
                     .or_else(|| sphere::truth(role, asked))
                     .or_else(|| self.profiles.as_ref().and_then(|p| p.truth(role, asked, c)))
-                    .or_else(|| self.colour.as_ref().and_then(|p| p.truth(role, asked, c)))
-                    .or_else(|| self.directions.truth(role, asked, c));
+                    .or_else(|| self.colour.as_ref().and_then(|p| p.truth(role, asked, c)));
             }
         }
         truths
@@ -138,10 +139,16 @@ impl<'a> Rules<'a> {
         let (case, spec) = (self.case, self.case.spec());
         let point = case.table.grid.texel(texel);
         let n = case.table.channels.len();
-        let targets: Vec<f64> = (0..n).map(|c| 0.25 * self.limit(texel, c)).collect();
+        let targets: Vec<f64> = (0..n).map(|c| 0.5 * self.limit(texel, c)).collect();
         let ask = |route| {
-            let asked =
-                Asked { spec, at: point.values(), baked: case.table.at(texel), targets: &targets, texel, route };
+            let asked = Asked {
+                spec,
+                at: point.values(),
+                baked: case.table.at(texel),
+                targets: &targets,
+                texel,
+                route,
+            };
             self.truths(&asked)
         };
         let first = ask(Route::First);
@@ -244,7 +251,7 @@ fn check(case: &Case<'_>) -> Outcome {
     for (seen, _) in looked {
         watch.join(seen);
     }
-    let few = lost as f64 > LOST * total as f64;
+    let few = lost as f64 > (LOST * total as f64).max(1.0);
     if few && !watch.is_broken() && watch.checked() > 0 {
         let why = watch.why().unwrap_or_default().to_owned();
         return Outcome::NotChecked(format!("{lost} of {total} texels could not be judged: {why}"));

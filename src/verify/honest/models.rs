@@ -1,11 +1,10 @@
 //! Channels that are made of integrals of a lobe: the integrals by [`super::hemisphere`], means over the hemisphere by one more sum,
 //! and the channels put together with the errors of their parts.
 
-use super::hemisphere::{Flux, Wanted};
-use super::quad::{self, WIDE};
+use super::hemisphere::Flux;
+use super::integrals::{How, ROUNDING, integrate, mean};
 use super::weight::weight;
-use super::{Asked, Route, Truth, fresnel};
-use crate::integrate::View;
+use super::{Asked, Route, Truth, fresnel, quad};
 use crate::models::Brdf;
 use crate::tables::integral::Functional;
 use crate::tables::role::{Light, Lobe, Side};
@@ -13,11 +12,8 @@ use crate::tables::{Role, Spec};
 use crate::verify::linear;
 use crate::verify::lobes::Lobes;
 use std::collections::BTreeMap;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 use std::sync::{Mutex, PoisonError};
-
-/// Rounding of a value in closed form.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// How often a finer sum is asked for.
 const TRIES: usize = 3;
@@ -51,7 +47,8 @@ impl Models {
     /// The channels that are made of integrals of lobes; nothing for others.
     pub(super) fn truths(&self, asked: &Asked<'_>, roles: &[Role]) -> Vec<Option<Truth>> {
         let needed = self.needed(asked, roles);
-        let mut truths: Vec<Option<Truth>> = vec![None; roles.len()];
+        let unused = |role: &Role| (*role == Role::Unused).then_some(Truth { value: 0.0, error: 0.0 });
+        let mut truths: Vec<Option<Truth>> = roles.iter().map(unused).collect();
         if needed.is_empty() {
             return truths;
         }
@@ -66,12 +63,12 @@ impl Models {
                 break;
             }
             // quotients magnify: ask for what they need
-            let excess = |(c, t): (usize, &Option<Truth>)| t.map_or(0.0, |t| t.error / (2.0 * target(c)));
+            let excess = |(c, t): (usize, &Option<Truth>)| t.map_or(0.0, |t| t.error / (1.9 * target(c)));
             let worst = truths.iter().enumerate().map(excess).fold(0.0, f64::max);
             if worst <= 1.0 || !worst.is_finite() {
                 break;
             }
-            aim *= (0.5 / worst).max(1e-4);
+            aim *= (0.7 / worst).max(1e-4);
         }
         truths
     }
@@ -191,103 +188,6 @@ impl Models {
     }
 }
 
-/// How an integral is to be found.
-#[derive(Debug, Clone, Copy)]
-struct How {
-    /// Error to aim at.
-    aim: f64,
-    route: Route,
-    /// Relative index of an interface; NaN where there is none.
-    eta: f64,
-}
-
-/// `2 int E mu dmu` in the root of mu.
-fn mean(model: &dyn Brdf, flux: Flux, how: How) -> Option<Truth> {
-    let mut breaks = vec![0.0, 1.0];
-    if how.eta < 1.0 {
-        // an albedo has a kink at the critical angle
-        breaks.push(((1.0 - how.eta) * (1.0 + how.eta)).sqrt().sqrt());
-    }
-    if how.route == Route::Second {
-        breaks.push(0.3);
-    }
-    breaks.sort_by(f64::total_cmp);
-    let mut failed = false;
-    let inner = How { aim: 0.5 * how.aim, ..how };
-    let mut albedo = |mu: f64, phi: f64| match integrate(model, View { mu, phi }, flux, &[Functional::One], inner)
-    {
-        Some(t) => quad::Sum::known(t[0].value, t[0].error),
-        None => {
-            failed = true;
-            quad::Sum::ZERO
-        }
-    };
-    let target = [0.5 * how.aim; WIDE];
-    let sum = quad::integrate(&breaks, 1, &target, 24, &mut |s| {
-        let mu = s * s;
-        let mut row = if model.turns() {
-            // both tangents are lines of symmetry
-            quad::integrate(&[0.0, FRAC_PI_2], 1, &target, 12, &mut |phi| {
-                let mut e = albedo(mu, phi);
-                e.scale(1.0 / FRAC_PI_2);
-                e
-            })
-        } else {
-            albedo(mu, 0.0)
-        };
-        row.scale(4.0 * s * mu);
-        row
-    });
-    (!failed).then_some(Truth { value: sum.value[0], error: sum.error[0] })
-}
-
-/// Integrals of a lobe at a view; nothing where it has no rule.
-fn integrate(
-    model: &dyn Brdf,
-    view: View,
-    flux: Flux,
-    functionals: &[Functional],
-    how: How,
-) -> Option<Vec<Truth>> {
-    let How { aim, route, eta } = how;
-    if let Some(reflected) = model.mirror(view.mu) {
-        let one = |value: f64| Truth { value, error: ROUNDING };
-        return Some(match flux {
-            Flux::Reflected => functionals.iter().map(|g| one(reflected * weight(*g, view.mu))).collect(),
-            Flux::Drawn => functionals.iter().map(|g| one(weight(*g, view.mu))).collect(),
-            // a smooth interface takes nothing
-            Flux::Crossing => vec![one(1.0 - reflected)],
-        });
-    }
-    let whole = [(1.0, model)];
-    let parts = model.parts().filter(|_| route == Route::Second && flux == Flux::Reflected);
-    let mut truths = vec![Truth { value: 0.0, error: 0.0 }; functionals.len()];
-    for &(factor, part) in parts.as_deref().unwrap_or(&whole) {
-        if factor <= 0.0 {
-            continue;
-        }
-        let share = aim / factor / parts.as_ref().map_or(1.0, |p| p.len() as f64);
-        let wanted = Wanted { model: part, view, flux, functionals, eta, target: share };
-        let sum = match (part.mirror(view.mu), route) {
-            (Some(_), _) => {
-                let known = integrate(part, view, flux, functionals, How { aim: share, ..how })?;
-                known.iter().enumerate().fold(quad::Sum::ZERO, |mut sum, (c, t)| {
-                    (sum.value[c], sum.error[c]) = (t.value, t.error);
-                    sum
-                })
-            }
-            (None, Route::First) => wanted.sum(false),
-            (None, Route::Second) => wanted.sum(true),
-            (None, Route::Drawn) => wanted.drawn(0x0d4a),
-        };
-        for (c, t) in truths.iter_mut().enumerate() {
-            t.value += factor * sum.value[c];
-            t.error += factor * sum.error[c] + ROUNDING * (factor * sum.value[c]).abs();
-        }
-    }
-    Some(truths)
-}
-
 /// A channel from the integrals that it is made of.
 fn combine(role: Role, asked: &Asked<'_>, known: &Known) -> Option<Truth> {
     let get = |lobe: Lobe, side: Side, flux: Flux, mean: bool, g: Functional| {
@@ -295,18 +195,17 @@ fn combine(role: Role, asked: &Asked<'_>, known: &Known) -> Option<Truth> {
         known.iter().find(|(b, _)| *b == wanted).map(|(_, t)| *t)
     };
     let light = |lobe, light, side, mean| {
-        let mut sum = Truth { value: 0.0, error: 0.0 };
+        let mut sum: Option<Truth> = None;
         for (flux, wanted) in
             [(Flux::Reflected, light != Light::Transmitted), (Flux::Crossing, light != Light::Reflected)]
         {
             // a lobe that lets nothing through has no integral of that
             if let Some(part) = get(lobe, side, flux, mean, Functional::One).filter(|_| wanted) {
-                let part = part?;
-                sum.value += part.value;
-                sum.error += part.error;
+                let (part, before) = (part?, sum.unwrap_or(Truth { value: 0.0, error: 0.0 }));
+                sum = Some(Truth { value: before.value + part.value, error: before.error + part.error });
             }
         }
-        Some(sum)
+        sum
     };
     let split = |lobe, g| get(lobe, Side::Above, Flux::Reflected, false, g).flatten();
     let all = |lobe| light(lobe, Light::All, Side::Above, false);

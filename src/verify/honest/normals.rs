@@ -39,7 +39,7 @@ impl Normals {
         let slope = sin2 / (alpha * alpha);
         match self {
             // cos^4 (1 + tan^2 / a^2)^2
-            Normals::Ggx => Some(((cos2 + slope).powi(-2), ROUNDING)),
+            Normals::Ggx => Some((libm::pow(cos2 + slope, -2.0), ROUNDING)),
             Normals::Beckmann if cos2 > 0.0 => {
                 let x = slope / cos2;
                 Some((libm::exp(-x) / (cos2 * cos2), ROUNDING * (1.0 + x)))
@@ -65,7 +65,7 @@ impl Normals {
             let x = from + step;
             let density = match self {
                 Normals::Beckmann => libm::exp(-x * x) / PI.sqrt(),
-                _ => 0.5 * (1.0 + x * x).powf(-1.5),
+                _ => 0.5 * libm::pow(1.0 + x * x, -1.5),
             };
             step * density / (rest * rest)
         });

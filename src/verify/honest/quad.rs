@@ -122,6 +122,41 @@ impl Ord for Panel {
     }
 }
 
+/// Panels by their errors, and the sums of those.
+struct Panels {
+    heap: BinaryHeap<Panel>,
+    own: [f64; WIDE],
+    target: [f64; WIDE],
+    channels: usize,
+    made: usize,
+}
+
+impl Panels {
+    fn push(&mut self, mut panel: Panel) {
+        for (sum, own) in self.own.iter_mut().zip(&panel.own) {
+            *sum += own;
+        }
+        self.made += 1;
+        panel.number = self.made;
+        let excess = panel.own.iter().zip(&self.target).take(self.channels).map(|(e, t)| e / t);
+        panel.worst = excess.fold(0.0, f64::max);
+        self.heap.push(panel);
+    }
+
+    fn pop(&mut self) -> Option<Panel> {
+        let panel = self.heap.pop()?;
+        for (sum, own) in self.own.iter_mut().zip(&panel.own) {
+            *sum -= own;
+        }
+        Some(panel)
+    }
+
+    /// NaN compares false and ends the work.
+    fn is_done(&self) -> bool {
+        !self.own.iter().zip(&self.target).take(self.channels).any(|(e, t)| e > t)
+    }
+}
+
 /// `int f` from the first break to the last, until the differences of the rules add up to less than `target` in each of
 /// `channels` channels, or `most` panels are made.
 pub(super) fn integrate(
@@ -131,62 +166,45 @@ pub(super) fn integrate(
     most: usize,
     f: &mut dyn FnMut(f64) -> Sum,
 ) -> Sum {
-    let mut heap = BinaryHeap::new();
-    let mut number = 0;
-    let mut own = [0.0; WIDE];
-    let mut push = |heap: &mut BinaryHeap<Panel>, mut panel: Panel, own: &mut [f64; WIDE], sign: f64| {
-        for (o, p) in own.iter_mut().zip(&panel.own) {
-            *o += sign * p;
-        }
-        number += 1;
-        panel.number = number;
-        panel.worst = (0..channels).map(|c| panel.own[c] / target[c]).fold(0.0, f64::max);
-        heap.push(panel);
-    };
+    let mut panels = Panels { heap: BinaryHeap::new(), own: [0.0; WIDE], target: *target, channels, made: 0 };
     for pair in breaks.windows(2).filter(|p| p[1] > p[0]) {
-        let panel = panel([pair[0], pair[1]], channels, f);
-        push(&mut heap, panel, &mut own, 1.0);
+        panels.push(panel([pair[0], pair[1]], channels, f));
     }
-    let mut made = heap.len();
-    // NaN compares false and ends the work
-    while made < most && (0..channels).any(|c| own[c] > target[c]) {
-        let Some(whole) = heap.pop() else { break };
+    while panels.made < most && !panels.is_done() {
+        let Some(whole) = panels.pop() else { break };
         let [a, b] = whole.ends;
         let middle = 0.5 * (a + b);
         if !(middle > a && middle < b) {
-            heap.push(whole);
+            panels.push(whole);
             break;
         }
         let mut halves = [panel([a, middle], channels, f), panel([middle, b], channels, f)];
-        made += 2;
-        for c in 0..channels {
-            own[c] -= whole.own[c];
-            for half in &mut halves {
-                let least = REMEMBERED * whole.own[c];
-                half.sum.error[c] += (least - half.own[c]).max(0.0);
-                half.own[c] = half.own[c].max(least);
-            }
-            // a whole that its halves change by more than it admitted was a lie, and so may they be
-            let apart = (halves[0].sum.value[c] + halves[1].sum.value[c] - whole.sum.value[c]).abs();
-            if apart > whole.own[c] && apart > ROUNDING * whole.sum.value[c].abs() {
-                let lie = (apart / whole.own[c].max(f64::MIN_POSITIVE)).min(1e3);
-                for half in &mut halves {
-                    half.sum.error[c] += (lie - 1.0) * half.own[c];
-                    half.own[c] *= lie;
-                }
-            }
-        }
-        for half in halves {
-            push(&mut heap, half, &mut own, 1.0);
-        }
+        doubt(&whole, &mut halves, channels);
+        halves.into_iter().for_each(|half| panels.push(half));
     }
-    let mut panels: Vec<Panel> = heap.into_vec();
+    let mut panels = panels.heap.into_vec();
     panels.sort_unstable_by_key(|p| p.number);
     let mut total = Sum::ZERO;
     for p in &panels {
         total.add(&p.sum, 1.0);
     }
     total
+}
+
+/// Raises the errors of halves by what is known of the whole.
+fn doubt(whole: &Panel, halves: &mut [Panel; 2], channels: usize) {
+    for c in 0..channels {
+        let least = REMEMBERED * whole.own[c];
+        // a whole that its halves change by more than it admitted was a lie, and so may they be
+        let apart = (halves[0].sum.value[c] + halves[1].sum.value[c] - whole.sum.value[c]).abs();
+        let lied = apart > whole.own[c] && apart > ROUNDING * whole.sum.value[c].abs();
+        let lie = if lied { (apart / whole.own[c].max(f64::MIN_POSITIVE)).min(1e3) } else { 1.0 };
+        for half in halves.iter_mut() {
+            let raised = lie * half.own[c].max(least);
+            half.sum.error[c] += raised - half.own[c];
+            half.own[c] = raised;
+        }
+    }
 }
 
 fn panel(ends: [f64; 2], channels: usize, f: &mut dyn FnMut(f64) -> Sum) -> Panel {
