@@ -16,7 +16,7 @@ use brdfbake::encode::diff_json::first_difference;
 use brdfbake::encode::read::{Image, Plane, Sample, read_bytes};
 use brdfbake::encode::{Storage, encoder};
 use brdfbake::grid::Provenance;
-use brdfbake::grid::provenance::{Reconstruction, Spread, Waiver};
+use brdfbake::grid::provenance::{LawRecord, LawResult, Reconstruction, Spread, Waiver};
 use brdfbake::report;
 use serde_json::{Value, json};
 use std::fs;
@@ -271,8 +271,14 @@ fn files_have_the_usual_permissions() {
 fn inspect_tells_everything() {
     let t = sample::table(&["dfg.scale", "dfg.bias"], |_, x| x);
     let mut p = sample::provenance(&t, Storage::Unorm16);
-    p.laws[0].held = false;
-    p.laws[0].margin = -1e-3;
+    p.laws[0].result = LawResult::Broken;
+    p.laws[0].margin = Some(-1e-3);
+    p.laws.push(LawRecord {
+        law: "honest".to_owned(),
+        why: Some("the rule has no value".to_owned()),
+        ..LawRecord::default()
+    });
+    p.tolerance_met = Some(false);
     p.waived = vec![Waiver { law: "energy".to_owned(), reason: "single scattering \u{1b}[31m".to_owned() }];
     p.verified = false;
     let largest = p.integration.largest_error.clone();

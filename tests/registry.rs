@@ -104,7 +104,7 @@ fn tables_are_complete() {
     for t in TABLES {
         check_id(t.id);
         check_params(t.id, t.params);
-        assert!(!t.sources.is_empty() && t.sources.iter().all(|s| !s.1.is_empty()), "{}: sources", t.id);
+        assert!(!t.sources.is_empty() && t.sources.iter().all(|s| !s.place.is_empty()), "{}: sources", t.id);
         assert!(
             !t.layouts.is_empty() && t.layouts.iter().all(|l| !l.channels.is_empty()),
             "{}: layouts",

@@ -4,7 +4,7 @@ use super::limits::Limits;
 use super::progress::{self, Format};
 use super::{Exit, Failure, engine, output, scene, suggest};
 use crate::cancel::Cancel;
-use crate::pipeline::{self, PipelineError};
+use crate::pipeline::{self, PipelineError, Settings};
 use crate::recipe::{self, LoadError, Plan};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -38,6 +38,9 @@ pub struct Args {
     /// Text on stderr, or one JSON object a line on stdout.
     #[arg(long, value_enum, default_value = "human")]
     message_format: Format,
+    /// Write nothing, and end with 4, where a law could not be checked or a texel misses its tolerance.
+    #[arg(long)]
+    strict: bool,
     /// Print the plan and the file names, and bake nothing.
     #[arg(long)]
     dry_run: bool,
@@ -68,7 +71,7 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         },
         (None, None) => (None, plan(args.recipe.as_deref().unwrap_or("default"))?),
     };
-    let settings = args.limits.settings(&args.out);
+    let settings = Settings { strict: args.strict, ..args.limits.settings(&args.out) };
     if args.dry_run {
         pipeline::check(&plan, &settings)?;
         output::data(&pipeline::outputs(&plan).join("\n"))?;
@@ -86,6 +89,7 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
             Ok(Exit::Done)
         }
         Err(error) => {
+            // what is in doubt was reported as it was found
             if let (PipelineError::Laws(findings), Format::Json) = (&error, args.message_format) {
                 for finding in findings {
                     report_finding(finding)?;

@@ -8,7 +8,7 @@ use crate::grid::Quantity;
 use crate::math::figures::exact;
 use crate::models::{self, Kind, ModelInfo, Param, Preset};
 use crate::recipe::{self, ENGINES, PRESETS};
-use crate::tables::{self, ModelUse, TableInfo};
+use crate::tables::{self, ModelUse, TableInfo, source};
 use crate::verify;
 
 /// Arguments of `describe`.
@@ -150,7 +150,7 @@ pub fn table(t: &TableInfo) -> String {
     }
     text.push_str(&params(t.params));
     text.push_str(&format!("laws checked: {}\nnotes: {}\n", t.laws.join(", "), t.notes));
-    text.push_str(&sources(&models::source_lines(t.sources)));
+    text.push_str(&sources(&source::all(t)));
     text
 }
 

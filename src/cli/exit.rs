@@ -133,6 +133,7 @@ impl From<PipelineError> for Failure {
             PipelineError::Bake { error: BakeError::Missed { .. }, .. }
             | PipelineError::Size { .. }
             | PipelineError::Laws(_)
+            | PipelineError::Doubt(_)
             | PipelineError::Range { .. } => Exit::Failed,
             PipelineError::Bake { error: BakeError::Texel { error, .. }, .. } => Exit::of_texel(error),
             PipelineError::Files(TransactionError::Twice { .. }) => Exit::Input,
@@ -146,6 +147,11 @@ impl From<PipelineError> for Failure {
             return Failure::new(exit, "interrupted; nothing was written");
         }
         let mut message = error.to_string();
+        if let PipelineError::Doubt(findings) = &error {
+            for finding in findings {
+                message.push_str(&format!("\n  {finding}"));
+            }
+        }
         if let PipelineError::Laws(findings) = &error {
             for finding in findings {
                 message.push_str(&format!("\n  {finding}"));

@@ -20,7 +20,7 @@
 //! let mu = Quantity::find("mu").ok_or("no such quantity")?;
 //! let table = Table {
 //!     grid: Grid::new(vec![Axis::new(mu, 2, Texel::Center)])?,
-//!     channels: vec![Channel { id: "albedo".into(), meaning: "E(mu)".into(), range: [0.0, 1.0] }],
+//!     channels: vec![Channel { id: "albedo".into(), meaning: "E(mu)".into(), range: [0.0, 1.0], role: String::new() }],
 //!     values: vec![0.1, 0.7],
 //!     errors: vec![0.0; 2],
 //!     evaluations: vec![1; 2],

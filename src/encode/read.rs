@@ -6,6 +6,7 @@
 use super::coding::Coding;
 use super::storage::Storage;
 use crate::grid::Provenance;
+use crate::grid::provenance::SCHEMA;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -216,10 +217,20 @@ impl Plane {
 
 impl Claim {
     pub(super) fn parse(text: String) -> Claim {
-        match serde_json::from_str(&text) {
-            Ok(known) => Claim::Known(Box::new(known)),
-            Err(e) => match serde_json::from_str(&text) {
-                Ok(several) => Claim::Several(several),
+        let newer = |all: &[Provenance]| all.iter().map(|p| p.schema).find(|s| *s > SCHEMA);
+        let fault = |version| {
+            format!("it is of metadata version {version}; this program reads versions up to {SCHEMA}")
+        };
+        match serde_json::from_str::<Provenance>(&text) {
+            Ok(known) => match newer(std::slice::from_ref(&known)) {
+                None => Claim::Known(Box::new(known)),
+                Some(version) => Claim::Unknown { text, fault: fault(version) },
+            },
+            Err(e) => match serde_json::from_str::<Vec<Provenance>>(&text) {
+                Ok(several) => match newer(&several) {
+                    None => Claim::Several(several),
+                    Some(version) => Claim::Unknown { text, fault: fault(version) },
+                },
                 Err(_) => Claim::Unknown { text, fault: e.to_string() },
             },
         }

@@ -7,7 +7,10 @@ use super::table::{Channel, Extreme};
 use serde::{Deserialize, Serialize};
 
 /// Version of the metadata layout; raised when a field changes its meaning.
-pub const SCHEMA: u32 = 1;
+///
+/// Version 2: a law's `held` became `result` (`held`, `broken`, `not checked`) with `why` and counts; `tolerance_met`; `verified`
+/// asks for a law that says what the numbers mean. Files of version 1 are read.
+pub const SCHEMA: u32 = 2;
 
 /// Name of the attribute, key or chunk that holds the provenance in a file.
 pub const ATTRIBUTE: &str = "brdfbake";
@@ -49,10 +52,13 @@ pub struct Provenance {
     /// How the lengths of the axes were found, if they were searched.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub size: Option<SizeRecord>,
-    /// Laws that were checked, with their margins.
+    /// What came of every law of the table.
     pub laws: Vec<LawRecord>,
-    /// True if every law held; false if one was waived.
+    /// True if no law is broken or waived, the tolerance is met, and a law other than `finite` and `range` was held.
     pub verified: bool,
+    /// Is every texel's estimate within the tolerance? None in files of version 1.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub tolerance_met: Option<bool>,
     /// Laws let through by the recipe, with the reason given there.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub waived: Vec<Waiver>,
@@ -232,17 +238,110 @@ pub struct Spread {
     pub mean: f64,
 }
 
-/// The outcome of one law.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// What came of one law.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(from = "AnyLawRecord")]
 pub struct LawRecord {
     /// Law id.
     pub law: String,
-    /// Did it hold?
-    pub held: bool,
-    /// Distance to the bound, positive when it holds; see the law for its meaning.
-    pub margin: f64,
+    /// What came of it.
+    pub result: LawResult,
+    /// Why it was not checked, or why some of what it looked at could not be judged.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why: Option<String>,
+    /// Distance to the bound, positive when it holds; see the law for its meaning. None where it is beyond all numbers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub margin: Option<f64>,
     /// Where the margin is smallest.
+    #[serde(skip_serializing_if = "String::is_empty")]
     pub at: String,
+    /// How many values, rows or pairs were judged.
+    pub checked: u64,
+    /// How many were looked at and could not be judged.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub unchecked: u64,
+}
+
+/// Whether a law held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum LawResult {
+    /// Everywhere where it looked.
+    #[serde(rename = "held")]
+    Held,
+    /// Not everywhere.
+    #[serde(rename = "broken")]
+    Broken,
+    /// It found nothing that it could judge.
+    #[default]
+    #[serde(rename = "not checked")]
+    NotChecked,
+}
+
+impl LawResult {
+    /// In words, as in files.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            LawResult::Held => "held",
+            LawResult::Broken => "broken",
+            LawResult::NotChecked => "not checked",
+        }
+    }
+}
+
+impl LawRecord {
+    /// A law that looked: result, margin, place, numbers of what was and was not judged, and why not.
+    #[must_use]
+    pub fn seen(
+        law: String,
+        result: LawResult,
+        margin: f64,
+        at: String,
+        counts: [u64; 2],
+        why: Option<String>,
+    ) -> LawRecord {
+        let [checked, unchecked] = counts;
+        LawRecord { law, result, why, margin: margin.is_finite().then_some(margin), at, checked, unchecked }
+    }
+
+    /// Did it hold?
+    #[must_use]
+    pub fn held(&self) -> bool {
+        self.result == LawResult::Held
+    }
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+fn is_zero(n: &u64) -> bool {
+    *n == 0
+}
+
+/// A law as files of any version hold it. In version 1 a law that found nothing to check held with margin 0.
+#[derive(Deserialize)]
+struct AnyLawRecord {
+    law: String,
+    result: Option<LawResult>,
+    held: Option<bool>,
+    why: Option<String>,
+    margin: Option<f64>,
+    #[serde(default)]
+    at: String,
+    #[serde(default)]
+    checked: u64,
+    #[serde(default)]
+    unchecked: u64,
+}
+
+impl From<AnyLawRecord> for LawRecord {
+    fn from(any: AnyLawRecord) -> LawRecord {
+        let AnyLawRecord { law, result, held, why, margin, at, checked, unchecked } = any;
+        let told = match held {
+            Some(true) => LawResult::Held,
+            Some(false) => LawResult::Broken,
+            None => LawResult::NotChecked,
+        };
+        LawRecord { law, result: result.unwrap_or(told), why, margin, at, checked, unchecked }
+    }
 }
 
 /// A broken law that the recipe lets through.

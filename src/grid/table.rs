@@ -14,6 +14,9 @@ pub struct Channel {
     pub meaning: String,
     /// The values that it can take; stored formats with a fixed range encode this interval.
     pub range: [f64; 2],
+    /// What it is to a law, in words; empty where that is not known.
+    #[serde(skip_serializing_if = "String::is_empty", default)]
+    pub role: String,
 }
 
 /// A baked table. `values` and `errors` are `[texel][channel]`, channel fastest, axis 0 next.

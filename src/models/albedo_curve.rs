@@ -113,20 +113,20 @@ impl AlbedoCurve {
     pub fn new(model: &dyn Brdf) -> AlbedoCurve {
         let mut errors = [0.0; PANELS];
         let mut missing = Vec::with_capacity(PANELS);
-        for panel in 0..PANELS {
+        for (panel, error) in errors.iter_mut().enumerate() {
             let (lo, hi) = ends(panel);
             let mut values = [0.0; ORDER];
             for (i, v) in values.iter_mut().enumerate() {
                 let mu = 0.5 * ((lo + hi) + (hi - lo) * point(i));
                 let e = directional_albedo(model, mu, TOLERANCE);
-                errors[panel] = f64::max(errors[panel], e.error[0]);
+                *error = f64::max(*error, e.error[0]);
                 *v = 1.0 - e.value[0];
             }
             // the polynomial between the nodes magnifies their errors a little
-            errors[panel] *= LEBESGUE;
+            *error *= LEBESGUE;
             // in the panel that holds the singularity coefficients fall like a power, and what is left out adds up
             let rest = if panel == 0 { 2.0 * ORDER as f64 } else { 1.0 };
-            errors[panel] += rest * tail(&values);
+            *error += rest * tail(&values);
             missing.push(values);
         }
         let mut curve = AlbedoCurve { missing, average: 0.0, errors };

@@ -17,7 +17,8 @@ pub enum Functional {
     F82,
     /// g = (1 - v)^e.
     Power(f64),
-    /// g = (F(v) - F0) / (1 - F0) of a dielectric of relative index eta; Schlick's cosine replaced by the exact curve.
+    /// g = max(0, (F(v) - F0) / (1 - F0)) of a dielectric of relative index eta; Schlick's cosine replaced by the exact curve, which
+    /// dips below F0 near Brewster's angle.
     Dielectric(f64),
 }
 

@@ -1,7 +1,7 @@
 //! What a run tells while it works. One event is one line of `--message-format json`.
 
 use super::{Outcome, Recovery};
-use crate::grid::provenance::{ChoiceRecord, SizeRecord};
+use crate::grid::provenance::{ChoiceRecord, LawRecord, SizeRecord};
 use crate::grid::table::Extreme;
 use crate::recipe::Plan;
 use crate::verify::Finding;
@@ -101,12 +101,18 @@ pub enum Event<'a> {
         evaluations: u64,
         /// Texels that missed the tolerance.
         missed: u64,
+        /// What came of every law.
+        laws: &'a [LawRecord],
+        /// Is every texel within the tolerance?
+        tolerance_met: bool,
+        /// No law broken or waived, the tolerance met, and a law that says what the numbers mean held.
+        verified: bool,
         /// Seconds spent on integration.
         bake_seconds: f64,
         /// Seconds spent on laws, rounding and the comparison between texels.
         check_seconds: f64,
     },
-    /// A finding that does not stop the run (a waived law, a missed tolerance).
+    /// A finding that does not stop the run: a waived law, one that could not be checked, a missed tolerance.
     Finding {
         /// Table name.
         table: &'a str,

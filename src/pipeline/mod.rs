@@ -39,13 +39,15 @@ pub struct Settings {
     pub jobs: Option<usize>,
     /// How long to wait for another run that writes into the folder.
     pub lock_timeout: Duration,
+    /// Write nothing where a law could not be checked or a texel misses its tolerance.
+    pub strict: bool,
 }
 
 impl Settings {
     /// Settings for a folder, with the defaults of the command: every core, [`LOCK_TIMEOUT`].
     #[must_use]
     pub fn new(out: impl Into<PathBuf>) -> Settings {
-        Settings { out: out.into(), jobs: None, lock_timeout: LOCK_TIMEOUT }
+        Settings { out: out.into(), jobs: None, lock_timeout: LOCK_TIMEOUT, strict: false }
     }
 }
 
@@ -104,6 +106,9 @@ pub enum PipelineError {
     /// Laws that do not hold and are not waived.
     #[error("{} broken; nothing was written", laws(.0.len()))]
     Laws(Vec<Finding>),
+    /// Laws that could not be checked, or texels that miss their tolerance, where neither is allowed.
+    #[error("{} in doubt; nothing was written, since `strict` is set", doubts(.0.len()))]
+    Doubt(Vec<Finding>),
     /// A value that the storage cannot hold.
     #[error("table {table}, {output}: {error}")]
     Range {
@@ -166,6 +171,10 @@ fn laws(n: usize) -> String {
     if n == 1 { "one law is".to_owned() } else { format!("{n} laws are") }
 }
 
+fn doubts(n: usize) -> String {
+    if n == 1 { "one thing is".to_owned() } else { format!("{n} things are") }
+}
+
 /// What a run did.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
@@ -195,9 +204,12 @@ pub fn run(
     let mut gathered = gather::Gathered::new(plan);
     let mut tables = Vec::new();
     let mut findings = Vec::new();
+    let mut doubts: Vec<Finding> = Vec::new();
     for (index, planned) in plan.tables.iter().enumerate() {
         match pool.install(|| table::make(plan, planned, index, cancel, progress)) {
             Ok(made) if findings.is_empty() => {
+                let doubtful = |f: &&Finding| settings.strict && f.result.is_doubt();
+                doubts.extend(made.warnings.iter().filter(doubtful).cloned());
                 gathered.take(index, made.files, &mut files)?;
                 tables.push(made.record);
             }
@@ -209,6 +221,9 @@ pub fn run(
     }
     if !findings.is_empty() {
         return Err(PipelineError::Laws(findings));
+    }
+    if !doubts.is_empty() {
+        return Err(PipelineError::Doubt(doubts));
     }
     let mut manifest = Manifest::new(plan, tables);
     manifest.set_sizes(|name| files.staged(name));

@@ -9,11 +9,10 @@ use crate::cancel::Cancel;
 use crate::encode::{self, EncodeInput, Shape, Storage, Unstored};
 use crate::grid::Provenance;
 use crate::grid::provenance::{AxisRecord, Encoding, Integration, RecipeId, SCHEMA, SizeRecord, Subject};
-use crate::models::source_lines;
 use crate::recipe::{Output, Plan, PlannedTable};
 use crate::tables::driver::{self, Options};
-use crate::tables::{Bound, Spec};
-use crate::verify::{self, Verified, reconstruction::Probe};
+use crate::tables::{Bound, Spec, source};
+use crate::verify::{self, Finding, Verified, reconstruction::Probe};
 use std::time::Instant;
 
 /// Most points at which a table is compared with fresh integrals between its texels.
@@ -22,6 +21,8 @@ const COMPARED: usize = 1 << 16;
 /// A table ready to be written.
 pub(super) struct Made {
     pub(super) record: TableRecord,
+    /// What was found that does not stop a bake.
+    pub(super) warnings: Vec<Finding>,
     pub(super) files: Vec<(String, Vec<u8>)>,
 }
 
@@ -52,8 +53,8 @@ pub(super) fn make(
     let bake_seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
     let checked = verify::check_until(cancel, &planned.bound, table, planned.tolerance, &planned.waivers)?;
-    let (verified, let_through) = checked.map_err(PipelineError::Laws)?;
-    for finding in &let_through {
+    let (verified, warnings) = checked.map_err(PipelineError::Laws)?;
+    for finding in &warnings {
         progress.event(&Event::Finding { table: name, finding });
     }
     let provenance = provenance(plan, planned, &verified);
@@ -63,6 +64,7 @@ pub(super) fn make(
             size: spec.grid.axes().iter().map(|a| a.len).collect(),
             files: Vec::new(),
         },
+        warnings,
         files: Vec::new(),
     };
     let names = super::file_names(planned);
@@ -188,7 +190,7 @@ fn provenance(plan: &Plan, planned: &PlannedTable, verified: &Verified) -> Prove
             title: format!("{}, {}", spec.kind.title, spec.layout.title()),
             formula: spec.kind.formula.to_owned(),
             params: spec.params.to_json(&spec.swept()),
-            sources: source_lines(spec.kind.sources),
+            sources: source::lines(spec),
         },
         model: model_subject(spec),
         axes: spec.grid.axes().iter().map(AxisRecord::new).collect(),
@@ -198,7 +200,7 @@ fn provenance(plan: &Plan, planned: &PlannedTable, verified: &Verified) -> Prove
             tolerance: planned.tolerance,
             largest_error: table.largest_error(),
             evaluations: table.total_evaluations(),
-            missed: driver::missed(table, planned.tolerance) as u64,
+            missed: verified.missed() as u64,
         },
         residuals: baker.residuals(table),
         encoding: None,
@@ -206,7 +208,8 @@ fn provenance(plan: &Plan, planned: &PlannedTable, verified: &Verified) -> Prove
         texels: None,
         size: planned.found.clone(),
         laws: verified.laws().to_vec(),
-        verified: verified.waived().is_empty(),
+        verified: verified.verified(),
+        tolerance_met: Some(verified.tolerance_met()),
         waived: verified.waived().to_vec(),
     }
 }
@@ -255,6 +258,9 @@ fn finished<'a>(
         reconstruction: reconstruction.collect(),
         evaluations: integration.evaluations,
         missed: integration.missed,
+        laws: &record.provenance.laws,
+        tolerance_met: integration.missed == 0,
+        verified: record.provenance.verified,
         bake_seconds,
         check_seconds,
     }

@@ -112,6 +112,7 @@ impl<'a> Binder<'a> {
             BindError::LayoutAndChannels { .. } | BindError::NoMix { .. } => {
                 faults.key(at("channels"), fault)
             }
+            BindError::Foreign { .. } => faults.value(at("layout"), fault),
             BindError::Model { .. } => faults.value(at("model"), fault),
             BindError::Param(e) => match e.key().map(|k| self.param(k)) {
                 Some(path) if matches!(e, ParamError::Unknown { .. }) => faults.key(path, fault),
@@ -200,7 +201,7 @@ impl<'a> Binder<'a> {
             BindError::IdleAxis { axis, .. } => self.find(axis).is_some_and(|i| self.remove_axis(i)),
             BindError::MissingAxis { needed, .. } => self.add_axis(needed),
             BindError::Grid(e) => self.repair_grid(e),
-            BindError::Unknown { .. } | BindError::Model { .. } => false,
+            BindError::Unknown { .. } | BindError::Model { .. } | BindError::Foreign { .. } => false,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::text::{Lines, counted, number};
 use crate::encode::read::{Claim, Image, Plane};
-use crate::grid::provenance::{AxisRecord, Integration, LawRecord, Spread, Subject};
+use crate::grid::provenance::{AxisRecord, Integration, LawRecord, LawResult, Spread, Subject};
 use crate::grid::table::{Extreme, place};
 use crate::grid::{Direction, Provenance, Texel};
 
@@ -195,16 +195,42 @@ fn quality(lines: &mut Lines, p: &Provenance) {
     for w in p.waived.iter().filter(|w| p.laws.iter().all(|l| l.law != w.law)) {
         lines.item(&w.law, &format!("waived: {}", w.reason));
     }
-    let verdict = match (p.verified, p.waived.is_empty()) {
-        (true, true) => "yes",
-        (true, false) => "yes, although laws were waived: the file contradicts itself",
-        (false, false) => "no: laws were waived, for the reasons above",
-        (false, true) => "no",
+    let met = match p.tolerance_met {
+        Some(true) => "met by every texel",
+        Some(false) => "missed by some texels",
+        None => "not stated",
     };
-    lines.item("verified", verdict);
+    lines.item("tolerance", met);
+    lines.item("verified", &verdict(p));
     lines.plain("Origin");
     lines.item("made by", &format!("{}, metadata version {}", p.tool, p.schema));
     lines.item("recipe", &format!("{}, hash {}", p.recipe.name, p.recipe.hash));
+}
+
+/// Is the table verified, and if not, why not?
+fn verdict(p: &Provenance) -> String {
+    let broken = p.laws.iter().any(|l| l.result == LawResult::Broken);
+    if p.verified && (broken || !p.waived.is_empty()) {
+        return "yes, although laws were waived: the file contradicts itself".to_owned();
+    }
+    if p.verified && p.schema < 2 {
+        return "yes, as metadata version 1 means it: a law that found nothing to check counts as held"
+            .to_owned();
+    }
+    if p.verified {
+        return "yes".to_owned();
+    }
+    let mut why = Vec::new();
+    if !p.waived.is_empty() {
+        why.push("laws were waived, for the reasons above");
+    }
+    if p.tolerance_met == Some(false) {
+        why.push("texels miss the tolerance");
+    }
+    if why.is_empty() {
+        why.push("no law that says what the numbers mean was held");
+    }
+    format!("no: {}", why.join("; "))
 }
 
 fn integration(lines: &mut Lines, i: &Integration) {
@@ -229,6 +255,15 @@ fn law(l: &LawRecord, p: &Provenance) -> String {
     let at = if l.at.is_empty() { String::new() } else { format!(" at {}", l.at) };
     let waived = p.waived.iter().find(|w| w.law == l.law);
     let waived = waived.map_or(String::new(), |w| format!("; waived: {}", w.reason));
-    let outcome = if l.held { "holds" } else { "BROKEN" };
-    format!("{outcome}, margin {}{at}{waived}", number(l.margin))
+    let why = l.why.as_ref().map_or(String::new(), |why| format!(": {why}"));
+    match l.result {
+        LawResult::NotChecked => format!("NOT CHECKED{why}{waived}"),
+        result => {
+            let outcome = if result == LawResult::Held { "holds" } else { "BROKEN" };
+            let margin = l.margin.map_or("beyond all numbers".to_owned(), number);
+            let seen = if l.checked > 0 { format!(", {} judged", l.checked) } else { String::new() };
+            let unseen = if l.unchecked > 0 { format!(", {} not{why}", l.unchecked) } else { String::new() };
+            format!("{outcome}, margin {margin}{at}{seen}{unseen}{waived}")
+        }
+    }
 }

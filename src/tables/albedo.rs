@@ -1,24 +1,38 @@
 //! Directional albedo: the fraction of light from a uniform sky, or of light along wo, that a surface reflects; and of an
 //! interface, that crosses it.
 
+use super::role::{Light, Lobe, Side};
 use super::sides::Sides;
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::Axis;
 use crate::integrate::Estimate;
 
-const fn channel(id: &'static str, meaning: &'static str) -> ChannelInfo {
-    ChannelInfo { id, meaning, range: [0.0, 1.0] }
+const fn channel(id: &'static str, meaning: &'static str, light: Light, side: Side) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [0.0, 1.0], role: Role::Albedo(Lobe::Model, light, side) }
 }
 
-const E: ChannelInfo =
-    channel("e", "int f(wo, wi) mu_i dwi; of models that transmit R + T, what is not lost between facets");
-const R: ChannelInfo = channel("r", "the reflected part");
-const T: ChannelInfo =
-    channel("t", "the part of the flux along wo that crosses the surface (without 1 / eta^2)");
-const E_INSIDE: ChannelInfo = channel("e.inside", "R + T seen from inside, at 1 / eta");
-const R_INSIDE: ChannelInfo = channel("r.inside", "the reflected part seen from inside, at 1 / eta");
-const T_INSIDE: ChannelInfo = channel("t.inside", "the part that crosses to the outside, at 1 / eta");
+const E: ChannelInfo = channel(
+    "e",
+    "int f(wo, wi) mu_i dwi; of models that transmit R + T, what is not lost between facets",
+    Light::All,
+    Side::Above,
+);
+const R: ChannelInfo = channel("r", "the reflected part", Light::Reflected, Side::Above);
+const T: ChannelInfo = channel(
+    "t",
+    "the part of the flux along wo that crosses the surface (without 1 / eta^2)",
+    Light::Transmitted,
+    Side::Above,
+);
+const E_INSIDE: ChannelInfo =
+    channel("e.inside", "R + T seen from inside, at 1 / eta", Light::All, Side::Inside);
+const R_INSIDE: ChannelInfo =
+    channel("r.inside", "the reflected part seen from inside, at 1 / eta", Light::Reflected, Side::Inside);
+const T_INSIDE: ChannelInfo =
+    channel("t.inside", "the part that crosses to the outside, at 1 / eta", Light::Transmitted, Side::Inside);
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
@@ -26,8 +40,8 @@ pub static INFO: TableInfo = TableInfo {
     title: "Directional albedo E",
     formula: "E(mu) = int f(wo, wi) mu_i dwi; R and T over the two hemispheres of wi",
     sources: &[
-        (cite::KULLA_CONTY_2017, "slide 'Directional albedo'"),
-        (cite::WALTER_2007, "Eq. 20 and 21 (f of an interface)"),
+        Source::new(cite::KULLA_CONTY_2017, "slide 'Directional albedo'"),
+        Source::new(cite::WALTER_2007, "Eq. 21 (f of the light that crosses)").of(crosses),
     ],
     coordinates: &["mu"],
     layouts: &[
@@ -45,13 +59,18 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Free(&[]),
     model: ModelUse::Any("ggx"),
     params: &[],
-    laws: &["finite", "range", "energy", "cross-check", "reciprocity"],
+    laws: &["finite", "range", "energy", "cross-check", "reciprocity", "honest"],
     axes: default_axes,
     notes: "Axes: mu, phi (the view azimuth, for anisotropic models), and any number parameter of the model (alpha or roughness, f0, \
         eta, ...). t wants a model that transmits, inside one with eta; axes f0_root4 and f0_root4_inverse spread eta above and \
         below 1.",
     bind,
 };
+
+/// Channels that tell crossing light from reflected light, or see a surface from inside.
+fn crosses(role: Role) -> bool {
+    matches!(role, Role::Albedo(_, light, side) if light != Light::All || side == Side::Inside)
+}
 
 fn default_axes() -> Vec<Axis> {
     super::dfg::view_and_roughness(32)

@@ -1,8 +1,11 @@
 //! Average albedo: the hemispherical mean of the directional albedo, for energy compensation.
 
 use super::integral::{Functional, integrate};
+use super::role::{Light, Lobe, Side};
 use super::sides::Sides;
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::graded::{Graded, Order};
@@ -12,24 +15,35 @@ use crate::models::Brdf;
 use crate::terms::fresnel;
 use std::f64::consts::FRAC_PI_2;
 
-const fn channel(id: &'static str, meaning: &'static str) -> ChannelInfo {
-    ChannelInfo { id, meaning, range: [0.0, 1.0] }
+const fn channel(id: &'static str, meaning: &'static str, light: Light, side: Side) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [0.0, 1.0], role: Role::Average(Lobe::Model, light, side) }
 }
 
-const E: ChannelInfo = channel("e-avg", "2 int_0^1 E(mu) mu dmu; of models that transmit the mean of R + T");
-const R: ChannelInfo = channel("r-avg", "2 int_0^1 R(mu) mu dmu");
-const T: ChannelInfo = channel("t-avg", "2 int_0^1 T(mu) mu dmu");
-const E_INSIDE: ChannelInfo = channel("e-avg.inside", "the mean of R + T seen from inside, at 1 / eta");
-const R_INSIDE: ChannelInfo = channel("r-avg.inside", "the mean of R seen from inside, at 1 / eta");
-const T_INSIDE: ChannelInfo =
-    channel("t-avg.inside", "the mean of T seen from inside, at 1 / eta; t-avg / eta^2");
+const E: ChannelInfo = channel(
+    "e-avg",
+    "2 int_0^1 E(mu) mu dmu; of models that transmit the mean of R + T",
+    Light::All,
+    Side::Above,
+);
+const R: ChannelInfo = channel("r-avg", "2 int_0^1 R(mu) mu dmu", Light::Reflected, Side::Above);
+const T: ChannelInfo = channel("t-avg", "2 int_0^1 T(mu) mu dmu", Light::Transmitted, Side::Above);
+const E_INSIDE: ChannelInfo =
+    channel("e-avg.inside", "the mean of R + T seen from inside, at 1 / eta", Light::All, Side::Inside);
+const R_INSIDE: ChannelInfo =
+    channel("r-avg.inside", "the mean of R seen from inside, at 1 / eta", Light::Reflected, Side::Inside);
+const T_INSIDE: ChannelInfo = channel(
+    "t-avg.inside",
+    "the mean of T seen from inside, at 1 / eta; t-avg / eta^2",
+    Light::Transmitted,
+    Side::Inside,
+);
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
     id: "average-albedo",
     title: "Average albedo E_avg",
     formula: "E_avg = 2 int_0^1 E(mu) mu dmu",
-    sources: &[(cite::KULLA_CONTY_2017, "slide 'Average albedo'")],
+    sources: &[Source::new(cite::KULLA_CONTY_2017, "slide 'Average albedo'")],
     coordinates: &[],
     layouts: &[
         Layout { id: "e-avg", doc: "the average albedo", channels: &[E] },
@@ -39,7 +53,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Free(&[R_INSIDE, T_INSIDE]),
     model: ModelUse::Any("ggx"),
     params: &[],
-    laws: &["finite", "range", "energy", "reciprocity"],
+    laws: &["finite", "range", "energy", "reciprocity", "honest"],
     axes: default_axes,
     notes: "Integrated directly, not from a baked E table: no interpolation error enters. Axes: any number parameter of the model.",
     bind,

@@ -1,6 +1,9 @@
 //! Transmittance of a medium over the length of the path, in colour: fog, water, coloured glass.
 
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::role::Band;
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::{Estimate, MAX_CHANNELS};
@@ -11,14 +14,22 @@ const fn sigma(id: &'static str, doc: &'static str, preset: f64) -> Param {
     Param { unit: "1/length", ..Param::number(id, "sigma_t", doc, [0.0, 1e9], Preset::Value(preset)) }
 }
 
+const fn passed(id: &'static str, meaning: &'static str, band: Band) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [0.0, 1.0], role: Role::Passed(band) }
+}
+
+const fn lost(id: &'static str, meaning: &'static str, band: Band) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [0.0, 1.0], role: Role::Lost(band) }
+}
+
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
     id: "beer-lambert",
     title: "Transmittance of a homogeneous medium",
     formula: "T(d) = exp(-sigma_t d)",
     sources: &[
-        (cite::CHANDRASEKHAR_1960, "section 7"),
-        (cite::POPE_FRY_1997, "Table 3 (the defaults; values recalled)"),
+        Source::new(cite::CHANDRASEKHAR_1960, "section 7"),
+        Source::new(cite::POPE_FRY_1997, "Table 3 (the defaults; values recalled)").by_default(),
     ],
     coordinates: &["path"],
     layouts: &[
@@ -26,18 +37,18 @@ pub static INFO: TableInfo = TableInfo {
             id: "transmitted",
             doc: "what passes",
             channels: &[
-                ChannelInfo { id: "transmitted.r", meaning: "exp(-sigma_r d)", range: [0.0, 1.0] },
-                ChannelInfo { id: "transmitted.g", meaning: "exp(-sigma_g d)", range: [0.0, 1.0] },
-                ChannelInfo { id: "transmitted.b", meaning: "exp(-sigma_b d)", range: [0.0, 1.0] },
+                passed("transmitted.r", "exp(-sigma_r d)", Band::Red),
+                passed("transmitted.g", "exp(-sigma_g d)", Band::Green),
+                passed("transmitted.b", "exp(-sigma_b d)", Band::Blue),
             ],
         },
         Layout {
             id: "lost",
             doc: "what does not: 1 - T with its own digits",
             channels: &[
-                ChannelInfo { id: "lost.r", meaning: "1 - exp(-sigma_r d)", range: [0.0, 1.0] },
-                ChannelInfo { id: "lost.g", meaning: "1 - exp(-sigma_g d)", range: [0.0, 1.0] },
-                ChannelInfo { id: "lost.b", meaning: "1 - exp(-sigma_b d)", range: [0.0, 1.0] },
+                lost("lost.r", "1 - exp(-sigma_r d)", Band::Red),
+                lost("lost.g", "1 - exp(-sigma_g d)", Band::Green),
+                lost("lost.b", "1 - exp(-sigma_b d)", Band::Blue),
             ],
         },
     ],
@@ -48,7 +59,7 @@ pub static INFO: TableInfo = TableInfo {
         sigma("sigma_g", "extinction, green", 0.0565),
         sigma("sigma_b", "extinction, blue", 0.00922),
     ],
-    laws: &["finite", "range", "monotone"],
+    laws: &["finite", "range", "monotone", "honest"],
     axes: default_axes,
     notes: "The defaults are pure water at 650, 550 and 450 nm, d in metres: with fresnel-dielectric at eta 1.333 all that clear water needs. \
         d runs along the refracted ray; it is not the vertical depth.",
@@ -70,7 +81,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     Ok(Box::new(Table {
         path: spec.coordinate("path")?,
         sigma: ["sigma_r", "sigma_g", "sigma_b"].map(|id| spec.params.number(id)),
-        lost: spec.layout.id == "lost",
+        lost: spec.roles().iter().any(|role| matches!(role, Role::Lost(_))),
     }))
 }
 

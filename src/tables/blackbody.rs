@@ -1,20 +1,24 @@
 //! The colour of a black body over its temperature: fire, lava, lamps.
 
+use super::role::{Band, Glow};
 use super::spectrum::{self, Spectrum};
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::{Param, Preset};
 use crate::terms::blackbody::{planck, wyman_xyz};
 
-const fn colour(id: &'static str, meaning: &'static str, range: [f64; 2]) -> ChannelInfo {
-    ChannelInfo { id, meaning, range }
+const fn colour(id: &'static str, meaning: &'static str, glow: Glow, band: Band) -> ChannelInfo {
+    let range = match glow {
+        Glow::Hue => [0.0, 8.0],
+        Glow::Unclamped => [-2.0, 8.0],
+        Glow::Light => [0.0, 3.4e38],
+    };
+    ChannelInfo { id, meaning, range, role: Role::BlackBody(glow, band) }
 }
-
-const HUE: [f64; 2] = [0.0, 8.0];
-const RAW: [f64; 2] = [-2.0, 8.0];
-const BRIGHT: [f64; 2] = [0.0, 3.4e38];
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
@@ -22,9 +26,9 @@ pub static INFO: TableInfo = TableInfo {
     title: "Black-body colour ramp",
     formula: "int B(lambda, T) (x, y, z) dlambda to linear sRGB, divided by its Y; B = 2 h c^2 / lambda^5 / (exp(h c / (lambda k T)) - 1)",
     sources: &[
-        (cite::PLANCK_1901, "with the exact SI constants of 2019"),
-        (cite::WYMAN_2013, "Eq. 4"),
-        (cite::LINDBLOOM, "XYZ to sRGB (D65)"),
+        Source::new(cite::PLANCK_1901, "with the exact SI constants of 2019"),
+        Source::new(cite::WYMAN_2013, "Eq. 4"),
+        Source::new(cite::LINDBLOOM, "XYZ to sRGB (D65)"),
     ],
     coordinates: &["temperature"],
     layouts: &[
@@ -32,27 +36,27 @@ pub static INFO: TableInfo = TableInfo {
             id: "hue",
             doc: "linear sRGB of luminance 1, negative blue (below 1900 K) cut to 0",
             channels: &[
-                colour("blackbody.r", "red at Y = 1", HUE),
-                colour("blackbody.g", "green at Y = 1", HUE),
-                colour("blackbody.b", "blue at Y = 1, at least 0", HUE),
+                colour("blackbody.r", "red at Y = 1", Glow::Hue, Band::Red),
+                colour("blackbody.g", "green at Y = 1", Glow::Hue, Band::Green),
+                colour("blackbody.b", "blue at Y = 1, at least 0", Glow::Hue, Band::Blue),
             ],
         },
         Layout {
             id: "hue-unclamped",
             doc: "the same as the matrix gives it",
             channels: &[
-                colour("blackbody.r", "red at Y = 1", RAW),
-                colour("blackbody.g", "green at Y = 1", RAW),
-                colour("blackbody.b", "blue at Y = 1", RAW),
+                colour("blackbody.r", "red at Y = 1", Glow::Unclamped, Band::Red),
+                colour("blackbody.g", "green at Y = 1", Glow::Unclamped, Band::Green),
+                colour("blackbody.b", "blue at Y = 1", Glow::Unclamped, Band::Blue),
             ],
         },
         Layout {
             id: "light",
             doc: "hue times the luminance, relative to that at the reference temperature",
             channels: &[
-                colour("blackbody.r", "red times Y(T) / Y(reference)", BRIGHT),
-                colour("blackbody.g", "green times Y(T) / Y(reference)", BRIGHT),
-                colour("blackbody.b", "blue times Y(T) / Y(reference)", BRIGHT),
+                colour("blackbody.r", "red times Y(T) / Y(reference)", Glow::Light, Band::Red),
+                colour("blackbody.g", "green times Y(T) / Y(reference)", Glow::Light, Band::Green),
+                colour("blackbody.b", "blue times Y(T) / Y(reference)", Glow::Light, Band::Blue),
             ],
         },
     ],
@@ -68,7 +72,7 @@ pub static INFO: TableInfo = TableInfo {
             Preset::Value(2000.0),
         )
     }],
-    laws: &["range"],
+    laws: &["range", "honest"],
     axes: default_axes,
     notes: "Fire is 1000 to 2000 K, a lamp 2856, daylight about 6500. Below 800 K the fit of the eye in the far red decides the hue.",
     bind,
@@ -81,16 +85,20 @@ fn default_axes() -> Vec<Axis> {
 
 struct Table {
     temperature: usize,
-    layout: &'static str,
+    glow: Glow,
     /// Luminance at the reference temperature.
     reference: f64,
     spectrum: &'static Spectrum,
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
+    let glows = spec.each(|role| match role {
+        Role::BlackBody(glow, _) => Some(glow),
+        _ => None,
+    })?;
     Ok(Box::new(Table {
         temperature: spec.coordinate("temperature")?,
-        layout: spec.layout.id,
+        glow: glows.first().copied().unwrap_or(Glow::Hue),
         reference: luminance(spec.params.number("reference")),
         spectrum: spectrum::plain(),
     }))
@@ -105,13 +113,13 @@ impl Baker for Table {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
         let temperature = at[self.temperature];
         let y = luminance(temperature);
-        let factor = if self.layout == "light" { y / self.reference } else { 1.0 };
+        let factor = if self.glow == Glow::Light { y / self.reference } else { 1.0 };
         let mut e =
             self.spectrum.colour(tolerance / factor.max(1.0), &mut |lambda| planck(lambda, temperature) / y);
         let mut value = [0.0; MAX_CHANNELS];
         for (c, out) in value.iter_mut().enumerate().take(3) {
             let v = e.value[c] * factor;
-            *out = if self.layout == "hue-unclamped" || v.is_nan() { v } else { v.max(0.0) };
+            *out = if self.glow == Glow::Unclamped || v.is_nan() { v } else { v.max(0.0) };
             e.error[c] = e.error[c] * factor + 1e-13 * v.abs();
         }
         e.value = value;

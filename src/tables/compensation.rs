@@ -6,25 +6,40 @@
 use super::average_albedo::average;
 use super::integral::{Functional, integrate};
 use super::memo::Memo;
+use super::role::{Lobe, Side};
 use super::sweep::Sweep;
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::Axis;
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use std::f64::consts::PI;
 
-const MISSING: ChannelInfo = ChannelInfo { id: "ms.missing", meaning: "1 - E(mu)", range: [0.0, 1.0] };
+const MISSING: ChannelInfo = ChannelInfo {
+    id: "ms.missing",
+    meaning: "1 - E(mu)",
+    range: [0.0, 1.0],
+    role: Role::Complement(Lobe::White, Side::Above),
+};
 const MISSING_AVG: ChannelInfo = ChannelInfo {
     id: "ms.missing-avg",
     meaning: "1 - E_avg, E_avg = 2 int E mu dmu; the same for every mu",
     range: [0.0, 1.0],
+    role: Role::AverageComplement(Lobe::White, Side::Above),
 };
 const LOBE: ChannelInfo = ChannelInfo {
     id: "ms.lobe",
     meaning: "(1 - E(mu)) / sqrt(pi (1 - E_avg)); 0 where nothing is missing",
     range: [0.0, 1e4],
+    role: Role::CompensationLobe(Lobe::White),
 };
-const TURQUIN: ChannelInfo = ChannelInfo { id: "ms.turquin", meaning: "1 / E(mu) - 1", range: [0.0, 16.0] };
+const TURQUIN: ChannelInfo = ChannelInfo {
+    id: "ms.turquin",
+    meaning: "1 / E(mu) - 1",
+    range: [0.0, 16.0],
+    role: Role::Gain(Lobe::White),
+};
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
@@ -32,8 +47,9 @@ pub static INFO: TableInfo = TableInfo {
     title: "Energy compensation of a reflecting lobe",
     formula: "1 - E, 1 - E_avg, (1 - E) / sqrt(pi (1 - E_avg)), 1 / E - 1, all of the white lobe (F = 1)",
     sources: &[
-        (cite::KULLA_CONTY_2017, "the slides on energy conservation (f_ms)"),
-        (cite::TURQUIN_2019, "Eq. 16 (number recalled)"),
+        Source::new(cite::KULLA_CONTY_2017, "the slides on energy conservation (f_ms)")
+            .of(|role| !matches!(role, Role::Gain(_))),
+        Source::new(cite::TURQUIN_2019, "Eq. 16 (number recalled)").of(|role| matches!(role, Role::Gain(_))),
     ],
     coordinates: &["mu"],
     layouts: &[
@@ -48,7 +64,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Free(&[]),
     model: ModelUse::Split("ggx"),
     params: &[],
-    laws: &["finite", "range", "reciprocity", "complement"],
+    laws: &["finite", "range", "reciprocity", "complement", "honest"],
     axes: default_axes,
     notes: "E is that of F = 1. The errors of E and E_avg are carried through to each channel. lobe grows without bound where mu and \
         alpha go to 0 together (2.8 at alpha = 0.01): give its axis an end. F_ms of a colour is a factor of the shader: F_avg^2 E_avg / \
@@ -64,17 +80,32 @@ fn default_axes() -> Vec<Axis> {
     axes
 }
 
+/// What a channel is made of.
+#[derive(Clone, Copy, PartialEq)]
+enum Part {
+    Missing,
+    MissingAverage,
+    Lobe,
+    Gain,
+}
+
 struct Compensation {
     sweep: Sweep,
-    channels: Vec<&'static str>,
+    parts: Vec<Part>,
     average: bool,
     averages: Memo<Estimate>,
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
-    let channels: Vec<&'static str> = spec.layout.ids().collect();
-    let average = channels.iter().any(|id| ["ms.missing-avg", "ms.lobe"].contains(id));
-    Ok(Box::new(Compensation { sweep: Sweep::new(spec, true)?, channels, average, averages: Memo::new() }))
+    let parts = spec.each(|role| match role {
+        Role::Complement(..) => Some(Part::Missing),
+        Role::AverageComplement(..) => Some(Part::MissingAverage),
+        Role::CompensationLobe(_) => Some(Part::Lobe),
+        Role::Gain(_) => Some(Part::Gain),
+        _ => None,
+    })?;
+    let average = parts.iter().any(|p| [Part::MissingAverage, Part::Lobe].contains(p));
+    Ok(Box::new(Compensation { sweep: Sweep::new(spec, true)?, parts, average, averages: Memo::new() }))
 }
 
 impl Compensation {
@@ -93,17 +124,17 @@ impl Compensation {
         let (albedo, error) = (e.value[0], e.error[0]);
         // the errors of quadrature may put E a little above 1
         let (missing, missing_avg) = ((1.0 - albedo).max(0.0), (1.0 - avg.value[0]).max(0.0));
-        for (c, id) in self.channels.iter().enumerate() {
-            (all.value[c], all.error[c]) = match *id {
-                "ms.missing" => (missing, error),
-                "ms.missing-avg" => (missing_avg, avg.error[0]),
-                "ms.turquin" if albedo > 0.0 => (missing / albedo, error / (albedo * albedo)),
-                "ms.lobe" if missing_avg > 0.0 => {
+        for (c, part) in self.parts.iter().enumerate() {
+            (all.value[c], all.error[c]) = match part {
+                Part::Missing => (missing, error),
+                Part::MissingAverage => (missing_avg, avg.error[0]),
+                Part::Gain if albedo > 0.0 => (missing / albedo, error / (albedo * albedo)),
+                Part::Lobe if missing_avg > 0.0 => {
                     let root = (PI * missing_avg).sqrt();
                     let value = missing / root;
                     (value, error / root + 0.5 * value * avg.error[0] / missing_avg)
                 }
-                _ => (0.0, 0.0),
+                Part::Gain | Part::Lobe => (0.0, 0.0),
             };
         }
         Ok(all)
@@ -116,7 +147,7 @@ impl Baker for Compensation {
         let mut all = self.at(at, inner)?;
         // quotients magnify the error of E: ask for what they need
         for _ in 0..3 {
-            let largest = all.error[..self.channels.len()].iter().copied().fold(0.0, f64::max);
+            let largest = all.error[..self.parts.len()].iter().copied().fold(0.0, f64::max);
             if largest <= tolerance || largest.is_nan() {
                 break;
             }

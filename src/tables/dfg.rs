@@ -8,60 +8,86 @@
 //! `d = (F0 + (1 - F0) (6/7)^5) (1 - tint)`, what F lies below Schlick's curve at v = 1/7.
 
 use super::integral::{Functional, integrate};
+use super::role::{Light, Lobe, OtherLobe, Side, Weight};
 use super::sweep::Sweep;
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS, Sums};
-use crate::models::{self, Brdf, ModelInfo, Params};
+use crate::models;
 use crate::terms::schlick;
 
 const UNIT: [f64; 2] = [0.0, 1.0];
-const SCALE: ChannelInfo =
-    ChannelInfo { id: "dfg.scale", meaning: "int (f/F) (1 - Fc) mu_i dwi", range: UNIT };
-const BIAS: ChannelInfo = ChannelInfo { id: "dfg.bias", meaning: "int (f/F) Fc mu_i dwi", range: UNIT };
-const FC: ChannelInfo = ChannelInfo { id: "dfg.fc", meaning: "int (f/F) Fc mu_i dwi", range: UNIT };
-const TOTAL: ChannelInfo =
-    ChannelInfo { id: "dfg.total", meaning: "int (f/F) mu_i dwi = E(mu, alpha), white", range: UNIT };
-const LOSS: ChannelInfo =
-    ChannelInfo { id: "dfg.loss", meaning: "1 - int (f/F) mu_i dwi = 1 - E", range: UNIT };
+
+/// A part of the white albedo with its Fresnel weight.
+const fn split(id: &'static str, meaning: &'static str, weight: Weight) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: UNIT, role: Role::Split(Lobe::White, weight, 1.0) }
+}
+
+/// What a lobe beside the model reflects.
+const fn beside(lobe: &'static OtherLobe) -> Role {
+    Role::Albedo(Lobe::Other(lobe), Light::All, Side::Above)
+}
+
+const SCALE: ChannelInfo = split("dfg.scale", "int (f/F) (1 - Fc) mu_i dwi", Weight::SchlickComplement);
+const BIAS: ChannelInfo = split("dfg.bias", "int (f/F) Fc mu_i dwi", Weight::Schlick);
+const FC: ChannelInfo = split("dfg.fc", "int (f/F) Fc mu_i dwi", Weight::Schlick);
+const TOTAL: ChannelInfo = split("dfg.total", "int (f/F) mu_i dwi = E(mu, alpha), white", Weight::One);
+const LOSS: ChannelInfo = ChannelInfo {
+    id: "dfg.loss",
+    meaning: "1 - int (f/F) mu_i dwi = 1 - E",
+    range: UNIT,
+    role: Role::Complement(Lobe::White, Side::Above),
+};
 const REST: ChannelInfo = ChannelInfo {
     id: "dfg.rest",
     meaning: "int (f/F) (Fc - (1 - mu)^5) mu_i dwi: bias without what a mirror of the same albedo has",
     range: [-1.0, 1.0],
+    role: Role::SplitRest(Lobe::White),
 };
-const F82: ChannelInfo = ChannelInfo {
-    id: "dfg.f82",
-    meaning: "int (f/F) v (1 - v)^6 / (1/7 (6/7)^6) mu_i dwi, v = wo.wh",
-    range: UNIT,
-};
+const F82: ChannelInfo =
+    split("dfg.f82", "int (f/F) v (1 - v)^6 / (1/7 (6/7)^6) mu_i dwi, v = wo.wh", Weight::F82);
 const F82_X16: ChannelInfo = ChannelInfo {
     id: "dfg.f82-x16",
     meaning: "16 int (f/F) v (1 - v)^6 mu_i dwi, as Babylon.js stores it for OpenPBR",
     range: UNIT,
+    role: Role::Split(Lobe::White, Weight::F82, 16.0 / schlick::F82_SCALE),
 };
 const CLOTH: ChannelInfo = ChannelInfo {
     id: "dfg.cloth",
     meaning: "int D V mu_i dwi, D of Charlie with r = alpha (not below 1e-6), V = 1 / (4 (mu_o + mu_i - mu_o mu_i))",
     range: [0.0, 400.0],
+    role: beside(&CLOTH_LOBE),
 };
 const DIFFUSE: ChannelInfo = ChannelInfo {
     id: "dfg.diffuse",
     meaning: "int f mu_i dwi of Burley's diffuse lobe, colour 1, r = sqrt(alpha)",
     range: [0.0, 785.0 / 504.0],
+    role: beside(&DIFFUSE_LOBE),
 };
 
 const DIFFUSE_HDRP: ChannelInfo = ChannelInfo {
     id: "dfg.diffuse-hdrp",
     meaning: "dfg.diffuse / 1.03571, kept in [0.5, 1.5], as Unity's HDRP stores it",
     range: [0.5, 1.5],
+    role: Role::KeptAlbedo(Lobe::Other(&DIFFUSE_LOBE), 1.03571),
 };
 
 const DIFFUSE_FROSTBITE: ChannelInfo = ChannelInfo {
     id: "dfg.diffuse-frostbite",
     meaning: "int f mu_i dwi of Frostbite's diffuse lobe, colour 1, r = sqrt(alpha)",
     range: [0.0, 1.04],
+    role: beside(&FROSTBITE_LOBE),
 };
+
+static CLOTH_LOBE: OtherLobe =
+    OtherLobe { info: &models::charlie_neubelt::INFO, param: "roughness", from_alpha: |alpha| alpha };
+static FROSTBITE_LOBE: OtherLobe =
+    OtherLobe { info: &models::frostbite_diffuse::INFO, param: "r", from_alpha: f64::sqrt };
+static DIFFUSE_LOBE: OtherLobe =
+    OtherLobe { info: &models::burley_diffuse::INFO, param: "r", from_alpha: f64::sqrt };
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
@@ -69,12 +95,15 @@ pub static INFO: TableInfo = TableInfo {
     title: "Split-sum DFG",
     formula: "scale = int (f/F) (1 - Fc) mu_i dwi, bias = int (f/F) Fc mu_i dwi, Fc = (1 - wo.wh)^5",
     sources: &[
-        (cite::KARIS_2013, "section 'Environment BRDF', Eq. 8"),
-        (cite::KUTZ_2021, "the F82 tint, whose term is the channel f82"),
-        (cite::ESTEVEZ_KULLA_2017, "Eq. 2 (D of the cloth)"),
-        (cite::NEUBELT_PETTINEO_2013, "the visibility of the cloth"),
-        (cite::BURLEY_2012, "section 5.3 (the diffuse lobe)"),
-        (cite::LAGARDE_2014, "section 3.1.2 (the diffuse lobe renormalised)"),
+        Source::new(cite::KARIS_2013, "section 'Environment BRDF', Eq. 8").of(is_of_the_model),
+        Source::new(cite::KUTZ_2021, "the F82 tint, whose term is the channel f82")
+            .of(|role| matches!(role, Role::Split(_, Weight::F82, _))),
+        Source::new(cite::ESTEVEZ_KULLA_2017, "Eq. 2 (D of the cloth)").of(is_cloth),
+        Source::new(cite::NEUBELT_PETTINEO_2013, "the visibility of the cloth").of(is_cloth),
+        Source::new(cite::BURLEY_2012, "section 5.3 (the diffuse lobe)")
+            .of(|role| role.lobe() == Some(Lobe::Other(&DIFFUSE_LOBE))),
+        Source::new(cite::LAGARDE_2014, "section 3.1.2 (the diffuse lobe renormalised)")
+            .of(|role| role.lobe() == Some(Lobe::Other(&FROSTBITE_LOBE))),
     ],
     coordinates: &["mu", "alpha"],
     layouts: &[
@@ -108,7 +137,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Free(&[F82_X16, DIFFUSE_HDRP, DIFFUSE_FROSTBITE]),
     model: ModelUse::Split("ggx"),
     params: &[],
-    laws: &["finite", "range", "energy", "split", "cross-check", "reciprocity"],
+    laws: &["finite", "range", "energy", "split", "cross-check", "reciprocity", "honest"],
     axes: default_axes,
     notes: "alpha = 0 is the mirror: scale = 1 - (1 - mu)^5, bias = (1 - mu)^5. cloth grows as 1 / sqrt(2 pi alpha) where mu and \
         alpha go to 0 (9 in Filament's first texel), and diffuse exceeds 1 on rough surfaces at grazing: half floats hold them, \
@@ -133,6 +162,14 @@ pub(super) fn view_and_roughness(len: usize) -> Vec<Axis> {
         .collect()
 }
 
+fn is_of_the_model(role: Role) -> bool {
+    role.lobe() == Some(Lobe::White)
+}
+
+fn is_cloth(role: Role) -> bool {
+    role.lobe() == Some(Lobe::Other(&CLOTH_LOBE))
+}
+
 /// What a channel is integrated from.
 #[derive(Clone, Copy)]
 enum Part {
@@ -142,26 +179,11 @@ enum Part {
     Loss,
     /// The Schlick-weighted integral without (1 - mu)^5 E.
     Rest,
-    /// The albedo of the cloth, or of the diffuse lobe.
-    Lobe(Lobe),
+    /// The albedo of a lobe beside the model.
+    Lobe(&'static OtherLobe),
     /// The same over a divisor, kept in the range of its channel.
-    Kept(Lobe, f64, [f64; 2]),
+    Kept(&'static OtherLobe, f64, [f64; 2]),
 }
-
-/// A lobe that shares the axes of the table, but not its model.
-#[derive(Clone, Copy)]
-struct Lobe {
-    info: &'static ModelInfo,
-    /// Its roughness, and that as a function of alpha.
-    param: &'static str,
-    from_alpha: fn(f64) -> f64,
-}
-
-const CLOTH_LOBE: Lobe =
-    Lobe { info: &models::charlie_neubelt::INFO, param: "roughness", from_alpha: |alpha| alpha };
-const FROSTBITE_LOBE: Lobe =
-    Lobe { info: &models::frostbite_diffuse::INFO, param: "r", from_alpha: f64::sqrt };
-const DIFFUSE_LOBE: Lobe = Lobe { info: &models::burley_diffuse::INFO, param: "r", from_alpha: f64::sqrt };
 
 /// What loss and rest decode to, alone or before another channel.
 const DECODED: &[&[ChannelInfo]] = &[
@@ -184,7 +206,12 @@ struct Dfg {
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
-    let parts: Vec<Part> = spec.layout.ids().map(part).collect();
+    let mut parts = spec.each(part)?;
+    for (part, channel) in parts.iter_mut().zip(&spec.layout.channels) {
+        if let Part::Kept(_, _, range) = part {
+            *range = channel.range;
+        }
+    }
     let mut functionals = Vec::new();
     for needed in parts.iter().flat_map(Part::functionals) {
         if !functionals.contains(&needed) {
@@ -207,29 +234,15 @@ impl Part {
     }
 }
 
-fn part(channel: &str) -> Part {
-    match channel {
-        "dfg.loss" => Part::Loss,
-        "dfg.rest" => Part::Rest,
-        "dfg.scale" => Part::Split(Functional::SchlickComplement, 1.0),
-        "dfg.bias" | "dfg.fc" => Part::Split(Functional::Schlick, 1.0),
-        "dfg.f82" => Part::Split(Functional::F82, 1.0),
-        "dfg.f82-x16" => Part::Split(Functional::F82, 16.0 / schlick::F82_SCALE),
-        "dfg.cloth" => Part::Lobe(CLOTH_LOBE),
-        "dfg.diffuse" => Part::Lobe(DIFFUSE_LOBE),
-        "dfg.diffuse-frostbite" => Part::Lobe(FROSTBITE_LOBE),
-        "dfg.diffuse-hdrp" => Part::Kept(DIFFUSE_LOBE, 1.03571, DIFFUSE_HDRP.range),
-        _ => Part::Split(Functional::One, 1.0),
-    }
-}
-
-impl Lobe {
-    fn build(&self, alpha: f64) -> Result<Box<dyn Brdf>, TexelError> {
-        let mut params = Params::resolve(self.info.id, self.info.params, [])?;
-        // not bounded by the range of the parameter, which is that of sensible materials
-        params.set(self.param, (self.from_alpha)(alpha));
-        Ok((self.info.build)(&params)?)
-    }
+fn part(role: Role) -> Option<Part> {
+    Some(match role {
+        Role::Complement(Lobe::White, _) => Part::Loss,
+        Role::SplitRest(Lobe::White) => Part::Rest,
+        Role::Split(Lobe::White, weight, factor) => Part::Split(weight.functional()?, factor),
+        Role::Albedo(Lobe::Other(lobe), ..) => Part::Lobe(lobe),
+        Role::KeptAlbedo(Lobe::Other(lobe), divisor) => Part::Kept(lobe, divisor, UNIT),
+        _ => return None,
+    })
 }
 
 impl Dfg {

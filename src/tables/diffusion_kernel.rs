@@ -9,14 +9,18 @@
 //! the least length of the profile. Gaussians are closed forms.
 
 use super::profile::{self, Profile, Rgb};
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::role::Band;
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS, Sums, line};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-const fn channel(id: &'static str, meaning: &'static str, most: f64) -> ChannelInfo {
-    ChannelInfo { id, meaning, range: [0.0, most] }
+const fn channel(id: &'static str, meaning: &'static str, role: Role) -> ChannelInfo {
+    let most = if matches!(role, Role::KernelWithin(_)) { 1.0 } else { 3.4e38 };
+    ChannelInfo { id, meaning, range: [0.0, most], role }
 }
 
 /// Registry entry.
@@ -24,39 +28,42 @@ pub static INFO: TableInfo = TableInfo {
     id: "diffusion-kernel",
     title: "Separable kernel of a diffusion profile",
     formula: "C(x) = int_-x^x L, or L(x) = int R(sqrt(x^2 + y^2)) dy, with 2 pi int R r dr = 1",
-    sources: &[
-        (cite::JIMENEZ_2015, "section 4, the artist-friendly and the pre-integrated kernel"),
-        (cite::DEON_LUEBKE_2007, "section 14.4.3"),
-    ],
+    sources: &SOURCES,
     coordinates: &["offset"],
     layouts: &[
         Layout {
             id: "cumulative",
             doc: "weight of the taps between -x and x; a tap over [a, b] weighs (C(b) - C(a)) / 2",
             channels: &[
-                channel("within.r", "int_-x^x L, red", 1.0),
-                channel("within.g", "int_-x^x L, green", 1.0),
-                channel("within.b", "int_-x^x L, blue", 1.0),
+                channel("within.r", "int_-x^x L, red", Role::KernelWithin(Band::Red)),
+                channel("within.g", "int_-x^x L, green", Role::KernelWithin(Band::Green)),
+                channel("within.b", "int_-x^x L, blue", Role::KernelWithin(Band::Blue)),
             ],
         },
         Layout {
             id: "line",
             doc: "density of the kernel; profile burley is infinite at 0: start its axis above",
             channels: &[
-                channel("line.r", "L, 1/mm, red", 3.4e38),
-                channel("line.g", "L, 1/mm, green", 3.4e38),
-                channel("line.b", "L, 1/mm, blue", 3.4e38),
+                channel("line.r", "L, 1/mm, red", Role::Kernel(Band::Red)),
+                channel("line.g", "L, 1/mm, green", Role::Kernel(Band::Green)),
+                channel("line.b", "L, 1/mm, blue", Role::Kernel(Band::Blue)),
             ],
         },
     ],
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: profile::PARAMS,
-    laws: &["finite", "range", "total", "monotone"],
+    laws: &["finite", "range", "total", "monotone", "honest"],
     axes: default_axes,
     notes: profile::NOTES,
     bind,
 };
+
+/// Own sources, and those of profiles.
+static SOURCES: [Source; 2 + profile::SOURCES.len()] = profile::with_sources([
+    Source::new(cite::JIMENEZ_2015, "section 4, the artist-friendly and the pre-integrated kernel"),
+    Source::new(cite::DEON_LUEBKE_2007, "section 14.4.3"),
+]);
 
 fn default_axes() -> Vec<Axis> {
     let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([0.0, 16.0]).warped(Warp::Power(0.5));
@@ -73,7 +80,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     Ok(Box::new(Kernel {
         offset: spec.coordinate("offset")?,
         profile: Profile::new(spec)?,
-        cumulative: spec.layout.id == "cumulative",
+        cumulative: spec.roles().iter().any(|role| matches!(role, Role::KernelWithin(_))),
     }))
 }
 

@@ -1,14 +1,15 @@
 //! Radial diffusion profiles over the distance: per area, per ring, and as a cumulative distribution.
 
 use super::profile::{self, Profile};
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
-use crate::cite;
+use super::role::{Band, Per};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Spec, TableInfo, TexelError};
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::Param;
 
-const fn channel(id: &'static str, meaning: &'static str, most: f64) -> ChannelInfo {
-    ChannelInfo { id, meaning, range: [0.0, most] }
+const fn channel(id: &'static str, meaning: &'static str, role: Role) -> ChannelInfo {
+    let most = if matches!(role, Role::ProfileWithin(_)) { 1.0 } else { 3.4e38 };
+    ChannelInfo { id, meaning, range: [0.0, most], role }
 }
 
 /// Registry entry.
@@ -16,45 +17,41 @@ pub static INFO: TableInfo = TableInfo {
     id: "diffusion-profile",
     title: "Radial diffusion profile",
     formula: "2 pi r R(r); or R(r); or the part inside, int_0^r 2 pi s R(s) ds; of red, green and blue",
-    sources: &[
-        (cite::DEON_LUEBKE_2007, "Fig. 14-13 (profile skin)"),
-        (cite::CHRISTENSEN_BURLEY_2015, "Eq. 3, 5, 6, 8 and 11 (profile burley)"),
-        (cite::JENSEN_2002, "Eq. 2 and 3 (profile dipole); the part inside is integrated here"),
-    ],
+    sources: &profile::SOURCES,
     coordinates: &["radius"],
     layouts: &[
         Layout {
             id: "ring",
             doc: "light per mm of distance: finite at 0 for every profile",
             channels: &[
-                channel("ring.r", "2 pi r R, 1/mm, red", 3.4e38),
-                channel("ring.g", "2 pi r R, 1/mm, green", 3.4e38),
-                channel("ring.b", "2 pi r R, 1/mm, blue", 3.4e38),
+                channel("ring.r", "2 pi r R, 1/mm, red", Role::Profile(Per::Ring, Band::Red)),
+                channel("ring.g", "2 pi r R, 1/mm, green", Role::Profile(Per::Ring, Band::Green)),
+                channel("ring.b", "2 pi r R, 1/mm, blue", Role::Profile(Per::Ring, Band::Blue)),
             ],
         },
         Layout {
             id: "area",
             doc: "light per mm^2; profile burley is infinite at 0: start its axis above",
             channels: &[
-                channel("area.r", "R, 1/mm^2, red", 3.4e38),
-                channel("area.g", "R, 1/mm^2, green", 3.4e38),
-                channel("area.b", "R, 1/mm^2, blue", 3.4e38),
+                channel("area.r", "R, 1/mm^2, red", Role::Profile(Per::Area, Band::Red)),
+                channel("area.g", "R, 1/mm^2, green", Role::Profile(Per::Area, Band::Green)),
+                channel("area.b", "R, 1/mm^2, blue", Role::Profile(Per::Area, Band::Blue)),
             ],
         },
         Layout {
             id: "inside",
             doc: "part of the light that leaves within the distance",
             channels: &[
-                channel("inside.r", "int_0^r 2 pi s R ds, red", 1.0),
-                channel("inside.g", "int_0^r 2 pi s R ds, green", 1.0),
-                channel("inside.b", "int_0^r 2 pi s R ds, blue", 1.0),
+                channel("inside.r", "int_0^r 2 pi s R ds, red", Role::ProfileWithin(Band::Red)),
+                channel("inside.g", "int_0^r 2 pi s R ds, green", Role::ProfileWithin(Band::Green)),
+                channel("inside.b", "int_0^r 2 pi s R ds, blue", Role::ProfileWithin(Band::Blue)),
             ],
         },
     ],
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: &PARAMS,
-    laws: &["finite", "range", "total", "monotone"],
+    laws: &["finite", "range", "total", "monotone", "honest"],
     axes: default_axes,
     notes: profile::NOTES,
     bind,
@@ -72,11 +69,18 @@ fn default_axes() -> Vec<Axis> {
     Quantity::find("radius").map(axis).into_iter().collect()
 }
 
+/// What the channels hold.
+#[derive(Clone, Copy, PartialEq)]
+enum Form {
+    Density(Per),
+    Within,
+}
+
 struct Table {
     radius: usize,
     profile: Profile,
     factor: [f64; 3],
-    layout: &'static str,
+    form: Form,
 }
 
 /// What the table's values integrate to, of each channel.
@@ -88,16 +92,22 @@ pub fn factor(spec: &Spec, profile: &Profile) -> [f64; 3] {
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     let profile = Profile::new(spec)?;
     let factor = factor(spec, &profile);
-    Ok(Box::new(Table { radius: spec.coordinate("radius")?, profile, factor, layout: spec.layout.id }))
+    let forms = spec.each(|role| match role {
+        Role::Profile(per, _) => Some(Form::Density(per)),
+        Role::ProfileWithin(_) => Some(Form::Within),
+        _ => None,
+    })?;
+    let form = forms.first().copied().unwrap_or(Form::Within);
+    Ok(Box::new(Table { radius: spec.coordinate("radius")?, profile, factor, form }))
 }
 
 impl Baker for Table {
     fn texel(&self, at: &[f64], _tolerance: f64) -> Result<Estimate, TexelError> {
         let r = at[self.radius];
-        let values = match self.layout {
-            "area" => self.profile.at(r),
-            "inside" => self.profile.inside(r),
-            _ => self.profile.ring(r),
+        let values = match self.form {
+            Form::Density(Per::Area) => self.profile.at(r),
+            Form::Density(Per::Ring) => self.profile.ring(r),
+            Form::Within => self.profile.inside(r),
         };
         let mut value = [0.0; MAX_CHANNELS];
         for (v, (x, f)) in value.iter_mut().zip(values.iter().zip(&self.factor)) {

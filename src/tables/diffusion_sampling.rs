@@ -1,36 +1,37 @@
 //! Radii with the density of a diffusion profile: the inverse of its cumulative distribution.
 
 use super::profile::{self, Profile};
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
-use crate::cite;
+use super::role::Band;
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Spec, TableInfo, TexelError};
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::math::root::solve;
 use crate::terms::burley_diffusion;
+
+const fn channel(id: &'static str, meaning: &'static str, band: Band) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [0.0, 3.4e38], role: Role::ProfileRadius(band) }
+}
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
     id: "diffusion-sampling",
     title: "Radii that sample a diffusion profile",
     formula: "r(u) with int_0^r 2 pi s R(s) ds = u int_0^inf 2 pi s R(s) ds",
-    sources: &[
-        (cite::CHRISTENSEN_BURLEY_2015, "Eq. 11 (profile burley), inverted in closed form"),
-        (cite::DEON_LUEBKE_2007, "Fig. 14-13 (profile skin)"),
-    ],
+    sources: &profile::SOURCES,
     coordinates: &["u"],
     layouts: &[Layout {
         id: "radius",
         doc: "distance to move along the surface, in mm",
         channels: &[
-            ChannelInfo { id: "radius.r", meaning: "r(u), mm, red", range: [0.0, 3.4e38] },
-            ChannelInfo { id: "radius.g", meaning: "r(u), mm, green", range: [0.0, 3.4e38] },
-            ChannelInfo { id: "radius.b", meaning: "r(u), mm, blue", range: [0.0, 3.4e38] },
+            channel("radius.r", "r(u), mm, red", Band::Red),
+            channel("radius.g", "r(u), mm, green", Band::Green),
+            channel("radius.b", "r(u), mm, blue", Band::Blue),
         ],
     }],
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: profile::PARAMS,
-    laws: &["finite", "range", "monotone"],
+    laws: &["finite", "range", "monotone", "honest"],
     axes: default_axes,
     notes: "u = 1 is infinitely far and counts as 1 - 2^-53. The slope grows towards both ends; the default axis ends at 0.999.",
     bind,

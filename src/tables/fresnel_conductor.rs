@@ -1,7 +1,11 @@
 //! Reflectance of metals over the angle, in colour.
 
+use super::fresnel_dielectric::part;
+use super::role::{Band, Polarisation};
 use super::spectrum::{self, Spectrum};
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
@@ -9,12 +13,17 @@ use crate::models::{Param, Preset};
 use crate::terms::fresnel::{self, Polarised};
 use crate::terms::metals::{self, Metal};
 
-const fn channel(id: &'static str, meaning: &'static str) -> ChannelInfo {
-    ChannelInfo { id, meaning, range: [0.0, 1.0] }
+const fn channel(id: &'static str, meaning: &'static str, p: Polarisation, band: Band) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [0.0, 1.0], role: Role::Metal(p, band) }
 }
 
-const fn colour(id: &'static str, meaning: &'static str) -> ChannelInfo {
-    ChannelInfo { id, meaning, range: [-0.25, 1.25] }
+const fn colour(id: &'static str, meaning: &'static str, band: Band) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [-0.25, 1.25], role: Role::MetalColour(band) }
+}
+
+/// Seen in daylight.
+fn is_colour(role: Role) -> bool {
+    matches!(role, Role::MetalColour(_))
 }
 
 /// Registry entry.
@@ -23,10 +32,11 @@ pub static INFO: TableInfo = TableInfo {
     title: "Conductor Fresnel reflectance",
     formula: "F = (R_s + R_p) / 2, R_s = |N^2 - 1|^2 / |mu + q|^4, R_p = |N^2 - 1|^2 |N^2 mu^2 - sin^2|^2 / |N^2 mu + q|^4, q^2 = N^2 - 1 + mu^2, N = n + ik",
     sources: &[
-        (cite::BORN_WOLF_1999, "section 14.2"),
-        (cite::POLYANSKIY_2024, "rows of n and k of Johnson and Christy, Rakic"),
-        (cite::WYMAN_2013, "Eq. 4 (layout srgb)"),
-        (cite::CIE_11664_2, "Table B.1, D65 (layout srgb)"),
+        Source::new(cite::BORN_WOLF_1999, "section 14.2"),
+        Source::new(cite::POLYANSKIY_2024, "rows of n and k of Johnson and Christy, Rakic")
+            .when("metal", &["au", "ag", "al", "cu", "fe", "ni", "ti", "w"]),
+        Source::new(cite::WYMAN_2013, "Eq. 4 (layout srgb)").of(is_colour),
+        Source::new(cite::CIE_11664_2, "Table B.1, D65 (layout srgb)").of(is_colour),
     ],
     coordinates: &["mu"],
     layouts: &[
@@ -34,30 +44,30 @@ pub static INFO: TableInfo = TableInfo {
             id: "rgb",
             doc: "F at 650, 550 and 450 nm",
             channels: &[
-                channel("fresnel.r", "F at 650 nm"),
-                channel("fresnel.g", "F at 550 nm"),
-                channel("fresnel.b", "F at 450 nm"),
+                channel("fresnel.r", "F at 650 nm", Polarisation::None, Band::Red),
+                channel("fresnel.g", "F at 550 nm", Polarisation::None, Band::Green),
+                channel("fresnel.b", "F at 450 nm", Polarisation::None, Band::Blue),
             ],
         },
         Layout {
             id: "srgb",
             doc: "linear sRGB of the reflected daylight (D65), a perfect mirror being 1; not clamped: gold and copper leave the gamut a little",
             channels: &[
-                colour("fresnel.r", "red of int F D65 (x, y, z) dlambda"),
-                colour("fresnel.g", "green of it"),
-                colour("fresnel.b", "blue of it"),
+                colour("fresnel.r", "red of int F D65 (x, y, z) dlambda", Band::Red),
+                colour("fresnel.g", "green of it", Band::Green),
+                colour("fresnel.b", "blue of it", Band::Blue),
             ],
         },
         Layout {
             id: "polarised",
             doc: "s and p at 650, 550 and 450 nm",
             channels: &[
-                channel("fresnel.s.r", "R_s at 650 nm"),
-                channel("fresnel.s.g", "R_s at 550 nm"),
-                channel("fresnel.s.b", "R_s at 450 nm"),
-                channel("fresnel.p.r", "R_p at 650 nm"),
-                channel("fresnel.p.g", "R_p at 550 nm"),
-                channel("fresnel.p.b", "R_p at 450 nm"),
+                channel("fresnel.s.r", "R_s at 650 nm", Polarisation::S, Band::Red),
+                channel("fresnel.s.g", "R_s at 550 nm", Polarisation::S, Band::Green),
+                channel("fresnel.s.b", "R_s at 450 nm", Polarisation::S, Band::Blue),
+                channel("fresnel.p.r", "R_p at 650 nm", Polarisation::P, Band::Red),
+                channel("fresnel.p.g", "R_p at 550 nm", Polarisation::P, Band::Green),
+                channel("fresnel.p.b", "R_p at 450 nm", Polarisation::P, Band::Blue),
             ],
         },
     ],
@@ -72,7 +82,7 @@ pub static INFO: TableInfo = TableInfo {
         Param::number("n", "n", "of metal index: real part", [0.0, 1e3], Preset::Value(0.2)),
         Param::number("k", "k", "of metal index: extinction coefficient", [0.0, 1e3], Preset::Value(3.4)),
     ],
-    laws: &["range"],
+    laws: &["range", "honest"],
     axes: default_axes,
     notes: "n and k of a metal are linear between its measured rows, 20 to 40 nm apart. Axes: mu, and with metal = index also n and k.",
     bind,
@@ -89,21 +99,28 @@ struct Table {
     axes: [Option<usize>; 2],
     index: [f64; 2],
     metal: Option<&'static Metal>,
-    layout: &'static str,
+    /// Which polarisation and wavelength each channel is; in daylight red, green and blue in order.
+    channels: Vec<(Polarisation, Band)>,
     /// Of layout srgb, split at the rows of the metal.
     spectrum: Option<Spectrum>,
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     let metal = metals::find(spec.params.choice("metal"));
+    let daylight = spec.roles().iter().any(|role| is_colour(*role));
+    let channels = spec.each(|role| match role {
+        Role::Metal(p, band) => Some((p, band)),
+        Role::MetalColour(band) => Some((Polarisation::None, band)),
+        _ => None,
+    })?;
     let rows = metal.into_iter().flat_map(|m| m.rows).map(|row| row[0]);
     Ok(Box::new(Table {
         mu: spec.coordinate("mu")?,
         axes: [spec.axis("n"), spec.axis("k")],
         index: [spec.params.number("n"), spec.params.number("k")],
         metal,
-        layout: spec.layout.id,
-        spectrum: (spec.layout.id == "srgb").then(|| spectrum::daylight_with(rows)),
+        channels,
+        spectrum: daylight.then(|| spectrum::daylight_with(rows)),
     }))
 }
 
@@ -122,13 +139,8 @@ impl Baker for Table {
             return super::finite(spectrum.colour(tolerance, f), 3);
         }
         let mut value = [0.0; MAX_CHANNELS];
-        for (c, lambda) in metals::RGB_NM.into_iter().enumerate() {
-            let f = self.reflectance(at, lambda);
-            if self.layout == "polarised" {
-                (value[c], value[3 + c]) = (f.s, f.p);
-            } else {
-                value[c] = f.unpolarised();
-            }
+        for (v, (p, band)) in value.iter_mut().zip(&self.channels) {
+            *v = part(self.reflectance(at, metals::RGB_NM[band.index()]), *p);
         }
         super::closed_form(value, 6)
     }

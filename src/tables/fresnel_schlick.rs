@@ -1,6 +1,8 @@
 //! Schlick's Fresnel factor and its generalisations over the angle.
 
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::{Estimate, MAX_CHANNELS};
@@ -14,22 +16,32 @@ pub static INFO: TableInfo = TableInfo {
     formula: "schlick: F0 + (F90 - F0)(1 - mu)^5; generalised: exponent p; f82-tint: - b mu (1 - mu)^6; lazanyi: F0(n, k), - a mu (1 - mu)^q; \
         dielectric: (1 - mu_t)^5 and F = 1 beyond the critical angle for eta < 1",
     sources: &[
-        (cite::SCHLICK_1994, "Eq. 15 (number recalled)"),
-        (cite::HOFFMAN_2019, "the generalised exponent"),
-        (cite::KUTZ_2021, "F82 tint"),
-        (cite::LAZANYI_2005, "Eq. 7 (number recalled)"),
+        Source::new(cite::SCHLICK_1994, "Eq. 15 (number recalled)"),
+        Source::new(cite::HOFFMAN_2019, "the generalised exponent").when("variant", &["generalised"]),
+        Source::new(cite::KUTZ_2021, "F82 tint").when("variant", &["f82-tint"]),
+        Source::new(cite::LAZANYI_2005, "Eq. 7 (number recalled)").when("variant", &["lazanyi"]),
     ],
     coordinates: &["mu"],
     layouts: &[
         Layout {
             id: "clamped",
             doc: "the factor, kept in [0, 1] as renderers keep it",
-            channels: &[ChannelInfo { id: "fresnel.f", meaning: "F, clamped to [0, 1]", range: [0.0, 1.0] }],
+            channels: &[ChannelInfo {
+                id: "fresnel.f",
+                meaning: "F, clamped to [0, 1]",
+                range: [0.0, 1.0],
+                role: Role::FresnelForm { clamped: true },
+            }],
         },
         Layout {
             id: "unclamped",
             doc: "the factor as its formula gives it: f82-tint and lazanyi may be negative",
-            channels: &[ChannelInfo { id: "fresnel.f", meaning: "F", range: [-2.0, 1.0] }],
+            channels: &[ChannelInfo {
+                id: "fresnel.f",
+                meaning: "F",
+                range: [-2.0, 1.0],
+                role: Role::FresnelForm { clamped: false },
+            }],
         },
     ],
     mix: Mix::Layouts,
@@ -50,7 +62,7 @@ pub static INFO: TableInfo = TableInfo {
         Param::number("q", "q", "of lazanyi: exponent of the dip", [0.01, 100.0], Preset::Value(6.0)),
         Param::number("eta", "eta", "of dielectric: relative index", [1e-3, 1e3], Preset::Value(1.5)),
     ],
-    laws: &["range"],
+    laws: &["range", "honest"],
     axes: default_axes,
     notes: "Not exact Fresnel: the plain form is off by up to 0.060 at eta 1.33, 0.036 at 1.5, 0.082 at 2.5. Axes: mu, and any number of its own (f0, n, k, eta).",
     bind,
@@ -78,7 +90,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         mu,
         swept: swept.filter(|(i, _)| *i != mu).collect(),
         params: spec.params.clone(),
-        clamped: spec.layout.id == "clamped",
+        clamped: spec.roles().contains(&Role::FresnelForm { clamped: true }),
     }))
 }
 

@@ -9,7 +9,10 @@
 //! by Nelder and Mead in their logarithms, weights by non-negative least squares within.
 
 use super::profile::{self, Profile, Rgb};
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::role::Band;
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::{Estimate, MAX_CHANNELS, gauss};
@@ -20,22 +23,21 @@ use std::sync::OnceLock;
 /// Most Gaussians of a fit.
 pub const MOST: usize = 16;
 
-const VARIANCE: ChannelInfo =
-    ChannelInfo { id: "gaussian.variance", meaning: "variance v, mm^2", range: [0.0, 1e9] };
-const RED: ChannelInfo = ChannelInfo { id: "weight.r", meaning: "weight of red", range: [0.0, 1.0] };
-const GREEN: ChannelInfo = ChannelInfo { id: "weight.g", meaning: "weight of green", range: [0.0, 1.0] };
-const BLUE: ChannelInfo = ChannelInfo { id: "weight.b", meaning: "weight of blue", range: [0.0, 1.0] };
+const fn channel(id: &'static str, meaning: &'static str, most: f64, role: Role) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [0.0, most], role }
+}
+
+const VARIANCE: ChannelInfo = channel("gaussian.variance", "variance v, mm^2", 1e9, Role::Variance);
+const RED: ChannelInfo = channel("weight.r", "weight of red", 1.0, Role::GaussianWeight(Band::Red));
+const GREEN: ChannelInfo = channel("weight.g", "weight of green", 1.0, Role::GaussianWeight(Band::Green));
+const BLUE: ChannelInfo = channel("weight.b", "weight of blue", 1.0, Role::GaussianWeight(Band::Blue));
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
     id: "gaussian-fit",
     title: "Sum of Gaussians fitted to a diffusion profile",
     formula: "R(r) ~ sum w_i exp(-r^2 / (2 v_i)) / (2 pi v_i), w_i >= 0, sum w_i = 1",
-    sources: &[
-        (cite::DEON_LUEBKE_2007, "section 14.4.3, sum-of-Gaussians fit"),
-        (cite::LAWSON_HANSON_1974, "chapter 23"),
-        (cite::NELDER_MEAD_1965, "the method"),
-    ],
+    sources: &SOURCES,
     coordinates: &["gaussian"],
     layouts: &[
         Layout {
@@ -51,9 +53,9 @@ pub static INFO: TableInfo = TableInfo {
                 RED,
                 GREEN,
                 BLUE,
-                ChannelInfo { id: "residual.r", meaning: "relative residual of red", range: [0.0, 1.0] },
-                ChannelInfo { id: "residual.g", meaning: "relative residual of green", range: [0.0, 1.0] },
-                ChannelInfo { id: "residual.b", meaning: "relative residual of blue", range: [0.0, 1.0] },
+                channel("residual.r", "relative residual of red", 1.0, Role::GaussianResidual(Band::Red)),
+                channel("residual.g", "relative residual of green", 1.0, Role::GaussianResidual(Band::Green)),
+                channel("residual.b", "relative residual of blue", 1.0, Role::GaussianResidual(Band::Blue)),
             ],
         },
     ],
@@ -66,6 +68,13 @@ pub static INFO: TableInfo = TableInfo {
         the rule of the file and in the layout weights-residual. Switch reconstruction off: nobody reads between Gaussians.",
     bind,
 };
+
+/// Own sources, and those of profiles.
+static SOURCES: [Source; 3 + profile::SOURCES.len()] = profile::with_sources([
+    Source::new(cite::DEON_LUEBKE_2007, "section 14.4.3, sum-of-Gaussians fit"),
+    Source::new(cite::LAWSON_HANSON_1974, "chapter 23"),
+    Source::new(cite::NELDER_MEAD_1965, "the method"),
+]);
 
 fn default_axes() -> Vec<Axis> {
     let axis = |q| Axis::new(q, 6, Texel::Endpoint).over([0.0, 5.0]);

@@ -4,32 +4,38 @@
 //! dielectric, `(F(v, eta) - F0) / (1 - F0)`.
 
 use super::integral::{Functional, integrate};
+use super::role::{Lobe, Weight};
 use super::sweep::Sweep;
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::Axis;
 use crate::integrate::{BATCH, Estimate, MAX_CHANNELS, Nodes, Sums, View, adaptive, ladder};
 use crate::models::{Brdf, Param, Preset};
 
-const fn channel(id: &'static str, meaning: &'static str) -> ChannelInfo {
-    ChannelInfo { id, meaning, range: [0.0, 1.0] }
+const fn channel(id: &'static str, meaning: &'static str, role: Role) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [0.0, 1.0], role }
 }
 
-const MEAN: ChannelInfo = channel("schlick.s", "int (f/F) s mu_i dwi / int (f/F) mu_i dwi");
-const PART: ChannelInfo = channel("schlick.part", "int (f/F) s mu_i dwi");
+const MEAN: ChannelInfo =
+    channel("schlick.s", "int (f/F) s mu_i dwi / int (f/F) mu_i dwi", Role::SplitMean(Lobe::White));
+const PART: ChannelInfo =
+    channel("schlick.part", "int (f/F) s mu_i dwi", Role::Split(Lobe::White, Weight::Curve, 1.0));
 const VISIBLE: ChannelInfo = channel(
     "schlick.s-visible",
     "int s p dwi, p the density of visible normals; what falls below the horizon counts as 0 (Cycles)",
+    Role::SampledMean(Lobe::White),
 );
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
     id: "generalised-schlick",
     title: "Mean of a generalised Schlick factor",
-    formula: "s = (1 - v)^e, or (F(v, eta) - F0) / (1 - F0), v = wo.wh",
+    formula: "s = (1 - v)^e, or max(0, (F(v, eta) - F0) / (1 - F0)), v = wo.wh",
     sources: &[
-        (cite::SCHLICK_1994, "Eq. 15 (F, with a free exponent)"),
-        (cite::WALTER_2007, "Eq. 22 (F of a dielectric)"),
+        Source::new(cite::SCHLICK_1994, "Eq. 15 (F, with a free exponent)").when("curve", &["power"]),
+        Source::new(cite::WALTER_2007, "Eq. 22 (F of a dielectric)").when("curve", &["dielectric"]),
     ],
     coordinates: &["mu", "alpha"],
     layouts: &[
@@ -52,7 +58,7 @@ pub static INFO: TableInfo = TableInfo {
         Param::number("exponent", "e", "exponent, for curve = power", [0.0, 5e4], Preset::Value(5.0)),
         Param::number("eta", "eta", "relative index, for curve = dielectric", [1.0, 1e3], Preset::Value(1.5)),
     ],
-    laws: &["finite", "range", "reciprocity"],
+    laws: &["finite", "range", "reciprocity", "honest"],
     axes: default_axes,
     notes: "Sweep exponent (or schlick_z, exponent = 5 (1 - z) / z) or eta (or f0_root4) on a third axis. With e = 5 the part is the \
         bias of `dfg`. At eta = 1 nothing is reflected and s is 0. visible takes the sampler of the model, which draws visible normals \
@@ -64,9 +70,17 @@ fn default_axes() -> Vec<Axis> {
     super::dfg::view_and_roughness(32)
 }
 
+/// What a channel is.
+#[derive(Clone, Copy, PartialEq)]
+enum Part {
+    Mean,
+    Weighed,
+    Visible,
+}
+
 struct Schlick {
     sweep: Sweep,
-    channels: Vec<&'static str>,
+    parts: Vec<Part>,
     dielectric: bool,
     /// Axis of the exponent or of eta, and its value where none sweeps it.
     axis: Option<usize>,
@@ -82,7 +96,12 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     }
     Ok(Box::new(Schlick {
         sweep: Sweep::new(spec, true)?,
-        channels: spec.layout.ids().collect(),
+        parts: spec.each(|role| match role {
+            Role::SplitMean(_) => Some(Part::Mean),
+            Role::Split(_, Weight::Curve, _) => Some(Part::Weighed),
+            Role::SampledMean(_) => Some(Part::Visible),
+            _ => None,
+        })?,
         dielectric,
         axis: spec.axis(id),
         fixed: spec.params.number(id),
@@ -100,25 +119,22 @@ impl Baker for Schlick {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
         let (model, view, curve) = (self.sweep.model(at)?, self.sweep.view(at), self.curve(at));
         let mut all = Estimate { value: [0.0; MAX_CHANNELS], error: [0.0; MAX_CHANNELS], evaluations: 0 };
-        let weighed = self.channels.iter().any(|id| *id != "schlick.s-visible");
+        let weighed = self.parts.iter().any(|p| *p != Part::Visible);
         let part = if weighed {
             integrate(&*model, view, &[curve, Functional::One], 0.25 * tolerance)?
         } else {
             all
         };
-        let visible = if self.channels.contains(&"schlick.s-visible") {
-            visible(&*model, view, curve, tolerance)?
-        } else {
-            all
-        };
+        let visible =
+            if self.parts.contains(&Part::Visible) { visible(&*model, view, curve, tolerance)? } else { all };
         all.evaluations = part.evaluations.saturating_add(visible.evaluations);
         let [s, e] = [part.value[0], part.value[1]];
-        for (c, id) in self.channels.iter().enumerate() {
-            (all.value[c], all.error[c]) = match *id {
-                "schlick.part" => (s, part.error[0]),
-                "schlick.s-visible" => (visible.value[0], visible.error[0]),
-                _ if e > 0.0 => (s / e, (part.error[0] + s / e * part.error[1]) / e),
-                _ => (0.0, 0.0),
+        for (c, wanted) in self.parts.iter().enumerate() {
+            (all.value[c], all.error[c]) = match wanted {
+                Part::Weighed => (s, part.error[0]),
+                Part::Visible => (visible.value[0], visible.error[0]),
+                Part::Mean if e > 0.0 => (s / e, (part.error[0] + s / e * part.error[1]) / e),
+                Part::Mean => (0.0, 0.0),
             };
         }
         Ok(all)

@@ -11,26 +11,46 @@
 
 use super::average_albedo::{Range, average_of};
 use super::memo::Memo;
+use super::role::{Lobe, Side};
 use super::sides::{crossing, reflected};
 use super::sweep::Sweep;
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS, View};
 use crate::models::Brdf;
 use crate::terms::fresnel;
 
-const fn channel(id: &'static str, meaning: &'static str) -> ChannelInfo {
-    ChannelInfo { id, meaning, range: [0.0, 1.0] }
+const fn channel(id: &'static str, meaning: &'static str, role: Role) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [0.0, 1.0], role }
 }
 
-const MISSING: ChannelInfo = channel("ms.missing", "1 - (R + T)(mu) from above");
-const MISSING_INSIDE: ChannelInfo = channel("ms.missing.inside", "1 - (R + T)(mu) from inside, at 1 / eta");
-const AVG: ChannelInfo = channel("ms.missing-avg", "2 int ms.missing mu dmu");
-const AVG_INSIDE: ChannelInfo = channel("ms.missing-avg.inside", "2 int ms.missing.inside mu dmu");
-const REFLECT: ChannelInfo =
-    channel("ms.reflect", "a = 1 - x (1 - F_avg(eta)), the reflected share of what is added from above");
-const REFLECT_INSIDE: ChannelInfo = channel("ms.reflect.inside", "a' = 1 - (1 - x)(1 - F_avg(1 / eta))");
+const MISSING: ChannelInfo =
+    channel("ms.missing", "1 - (R + T)(mu) from above", Role::Complement(Lobe::Model, Side::Above));
+const MISSING_INSIDE: ChannelInfo = channel(
+    "ms.missing.inside",
+    "1 - (R + T)(mu) from inside, at 1 / eta",
+    Role::Complement(Lobe::Model, Side::Inside),
+);
+const AVG: ChannelInfo =
+    channel("ms.missing-avg", "2 int ms.missing mu dmu", Role::AverageComplement(Lobe::Model, Side::Above));
+const AVG_INSIDE: ChannelInfo = channel(
+    "ms.missing-avg.inside",
+    "2 int ms.missing.inside mu dmu",
+    Role::AverageComplement(Lobe::Model, Side::Inside),
+);
+const REFLECT: ChannelInfo = channel(
+    "ms.reflect",
+    "a = 1 - x (1 - F_avg(eta)), the reflected share of what is added from above",
+    Role::ReflectedShare(Lobe::Model, Side::Above),
+);
+const REFLECT_INSIDE: ChannelInfo = channel(
+    "ms.reflect.inside",
+    "a' = 1 - (1 - x)(1 - F_avg(1 / eta))",
+    Role::ReflectedShare(Lobe::Model, Side::Inside),
+);
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
@@ -38,8 +58,11 @@ pub static INFO: TableInfo = TableInfo {
     title: "Energy compensation of a rough interface",
     formula: "1 - (R + T) from both sides, their means, and the reflected shares a, a'; x = m'_avg / (m_avg + m'_avg)",
     sources: &[
-        (cite::KULLA_CONTY_2017, "the slides on dielectrics (split derived again, slide not verified)"),
-        (cite::WALTER_2007, "Eq. 20 and 21 (f of the interface)"),
+        Source::new(
+            cite::KULLA_CONTY_2017,
+            "the slides on dielectrics (split derived again, slide not verified)",
+        ),
+        Source::new(cite::WALTER_2007, "Eq. 20 and 21 (f of the interface)"),
     ],
     coordinates: &["mu"],
     layouts: &[
@@ -57,7 +80,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Free(&[]),
     model: ModelUse::Any("ggx-glass"),
     params: &[],
-    laws: &["finite", "range", "reciprocity", "complement"],
+    laws: &["finite", "range", "reciprocity", "complement", "honest"],
     axes: default_axes,
     notes: "Wants a model with eta that transmits (ggx-glass, beckmann-glass). Means and shares do not depend on mu: a table of them \
         alone is `average-albedo`, layout both-sides. From inside, total reflection makes the integrals dear: keep the tables small. \
@@ -77,9 +100,17 @@ fn default_axes() -> Vec<Axis> {
         .collect()
 }
 
+/// What a channel is made of.
+#[derive(Clone, Copy, PartialEq)]
+enum Part {
+    Missing,
+    Average,
+    Share,
+}
+
 struct Glass {
     sweep: Sweep,
-    channels: Vec<&'static str>,
+    parts: Vec<(Part, Side)>,
     averages: Memo<Estimate>,
 }
 
@@ -89,7 +120,13 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         let why = "is no interface; use one that transmits, such as `ggx-glass`";
         return Err(BindError::Model { kind: spec.kind.id, model: sweep.info().id.to_owned(), why });
     }
-    Ok(Box::new(Glass { sweep, channels: spec.layout.ids().collect(), averages: Memo::new() }))
+    let parts = spec.each(|role| match role {
+        Role::Complement(_, side) => Some((Part::Missing, side)),
+        Role::AverageComplement(_, side) => Some((Part::Average, side)),
+        Role::ReflectedShare(_, side) => Some((Part::Share, side)),
+        _ => None,
+    })?;
+    Ok(Box::new(Glass { sweep, parts, averages: Memo::new() }))
 }
 
 /// 1 - (R + T) of a model at a view.
@@ -103,8 +140,8 @@ fn missing(model: &dyn Brdf, view: View, tolerance: f64) -> Result<Estimate, Tex
 }
 
 impl Glass {
-    fn wants(&self, what: &str) -> bool {
-        self.channels.iter().any(|id| id.starts_with(what))
+    fn wants(&self, part: Part) -> bool {
+        self.parts.iter().any(|p| p.0 == part)
     }
 
     /// Means from above and from inside.
@@ -139,28 +176,31 @@ fn shares(means: &Estimate, eta: f64) -> [(f64, f64); 2] {
 impl Glass {
     /// The channels, with means to `inner`.
     fn at(&self, at: &[f64], tolerance: f64, inner: f64) -> Result<Estimate, TexelError> {
-        let models = [self.sweep.model_from(at, false)?, self.sweep.model_from(at, true)?];
+        let models = [self.sweep.model_from(at, Side::Above)?, self.sweep.model_from(at, Side::Inside)?];
         let view = self.sweep.view(at);
         let nothing = Estimate { value: [0.0; MAX_CHANNELS], error: [0.0; MAX_CHANNELS], evaluations: 0 };
-        let one = |id: &str, model: &dyn Brdf| {
-            if self.channels.contains(&id) { missing(model, view, tolerance) } else { Ok(nothing) }
+        let one = |side: Side, model: &dyn Brdf| {
+            if self.parts.contains(&(Part::Missing, side)) {
+                missing(model, view, tolerance)
+            } else {
+                Ok(nothing)
+            }
         };
-        let above = one("ms.missing", &*models[0])?;
-        let inside = one("ms.missing.inside", &*models[1])?;
-        let averages = self.wants("ms.missing-avg") || self.wants("ms.reflect");
+        let above = one(Side::Above, &*models[0])?;
+        let inside = one(Side::Inside, &*models[1])?;
+        let averages = self.wants(Part::Average) || self.wants(Part::Share);
         let means = if averages { self.means(at, [&*models[0], &*models[1]], inner)? } else { nothing };
         let shares = shares(&means, self.sweep.params(at).number("eta"));
         let mut all = nothing;
         // means are shared by the texels of a row and counted by none: who computed them depends on the threads
         all.evaluations = above.evaluations.saturating_add(inside.evaluations);
-        for (c, id) in self.channels.iter().enumerate() {
-            (all.value[c], all.error[c]) = match *id {
-                "ms.missing" => (above.value[0], above.error[0]),
-                "ms.missing.inside" => (inside.value[0], inside.error[0]),
-                "ms.missing-avg" => (means.value[0], means.error[0]),
-                "ms.missing-avg.inside" => (means.value[1], means.error[1]),
-                "ms.reflect" => shares[0],
-                _ => shares[1],
+        for (c, &(part, side)) in self.parts.iter().enumerate() {
+            let i = side as usize;
+            (all.value[c], all.error[c]) = match (part, side) {
+                (Part::Missing, Side::Above) => (above.value[0], above.error[0]),
+                (Part::Missing, Side::Inside) => (inside.value[0], inside.error[0]),
+                (Part::Average, _) => (means.value[i], means.error[i]),
+                (Part::Share, _) => shares[i],
             };
         }
         Ok(all)
@@ -170,8 +210,8 @@ impl Glass {
 impl Baker for Glass {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
         let all = self.at(at, tolerance, tolerance)?;
-        let largest = all.error[..self.channels.len()].iter().copied().fold(0.0, f64::max);
-        if largest <= tolerance || !self.wants("ms.reflect") || !largest.is_finite() {
+        let largest = all.error[..self.parts.len()].iter().copied().fold(0.0, f64::max);
+        if largest <= tolerance || !self.wants(Part::Share) || !largest.is_finite() {
             return Ok(all);
         }
         // a share is a quotient of means: they need more digits where little is missing

@@ -8,8 +8,11 @@
 //! Both cumulative distributions are pieces of Legendre series ([`crate::integrate::density`]), made to a part of the tolerance until the
 //! direction itself, moved by what they leave out, stays within the tolerance.
 
+use super::role::{Component, Lobe};
 use super::sweep::Sweep;
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::density::Density;
@@ -20,41 +23,52 @@ use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::{Arc, Mutex, PoisonError};
 
-const fn channel(id: &'static str, meaning: &'static str, range: [f64; 2]) -> ChannelInfo {
-    ChannelInfo { id, meaning, range }
+const fn channel(id: &'static str, meaning: &'static str, component: Component) -> ChannelInfo {
+    let range = match component {
+        Component::X | Component::Y => [-1.0, 1.0],
+        Component::Z => [0.0, 1.0],
+        Component::Azimuth => [0.0, TAU],
+    };
+    ChannelInfo { id, meaning, range, role: Role::Direction(Lobe::Model, component) }
 }
 
-const X: ChannelInfo = channel("wi.x", "x of the light direction", [-1.0, 1.0]);
-const Y: ChannelInfo = channel("wi.y", "y of it", [-1.0, 1.0]);
-const Z: ChannelInfo = channel("wi.z", "z of it, mu_i", [0.0, 1.0]);
+const X: ChannelInfo = channel("wi.x", "x of the light direction", Component::X);
+const Y: ChannelInfo = channel("wi.y", "y of it", Component::Y);
+const Z: ChannelInfo = channel("wi.z", "z of it, mu_i", Component::Z);
+const PDF: ChannelInfo = ChannelInfo {
+    id: "pdf",
+    meaning: "f mu_i / E, 1/sr",
+    range: [0.0, 3.4e38],
+    role: Role::DirectionDensity(Lobe::Model),
+};
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
     id: "importance",
     title: "Directions that sample a model",
     formula: "theta(u): int_0^theta m = u int_0^(pi/2) m, m = sin cos int f dphi; phi(v): int_0^phi f = v int_0^(2 pi) f at that theta",
-    sources: &[(cite::LAWRENCE_2004, "section 4, marginal and conditional distributions")],
+    sources: &[Source::new(cite::LAWRENCE_2004, "section 4, marginal and conditional distributions")],
     coordinates: &["u", "v", "mu"],
     layouts: &[
         Layout {
             id: "direction-pdf",
             doc: "light direction for a view in the xz plane, to be normalised after filtering, and its density per steradian",
-            channels: &[X, Y, Z, channel("pdf", "f mu_i / E, 1/sr", [0.0, 3.4e38])],
+            channels: &[X, Y, Z, PDF],
         },
         Layout { id: "direction", doc: "the same without the density", channels: &[X, Y, Z] },
         Layout {
             id: "angles",
             doc: "cosine to the normal, and azimuth from the view direction",
             channels: &[
-                channel("mu_i", "cosine of the light direction", [0.0, 1.0]),
-                channel("phi", "azimuth from wo, rad", [0.0, TAU]),
+                channel("mu_i", "cosine of the light direction", Component::Z),
+                channel("phi", "azimuth from wo, rad", Component::Azimuth),
             ],
         },
     ],
     mix: Mix::Layouts,
     model: ModelUse::Any("ggx"),
     params: &[],
-    laws: &["range", "monotone", "total"],
+    laws: &["range", "monotone", "total", "honest"],
     axes: default_axes,
     notes: "u = 0 is the normal, u = 1 the horizon. Axes: u, v, mu, phi (the view azimuth, for anisotropic models) and any number parameter of the model. \
         A light reflected below the horizon does not exist here: the density is that of the reflected light alone.",
@@ -77,7 +91,7 @@ struct Importance {
     sweep: Sweep,
     u: usize,
     v: usize,
-    layout: &'static str,
+    parts: Vec<Option<Component>>,
     /// Marginals by the bits of everything but u and v, and the part of the tolerance: texels of one view share them.
     marginals: Mutex<HashMap<Vec<u64>, Arc<Density>>>,
 }
@@ -94,7 +108,11 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         sweep,
         u: spec.coordinate("u")?,
         v: spec.coordinate("v")?,
-        layout: spec.layout.id,
+        parts: spec.each(|role| match role {
+            Role::Direction(_, component) => Some(Some(component)),
+            Role::DirectionDensity(_) => Some(None),
+            _ => None,
+        })?,
         marginals: Mutex::new(HashMap::new()),
     }))
 }
@@ -225,9 +243,9 @@ impl Baker for Importance {
         for part in PARTS {
             let draw = self.draw(&*model, at, part * tolerance);
             evaluations = evaluations.saturating_add(draw.evaluations);
-            e = match self.layout {
-                "angles" => angles(&draw),
-                layout => direction(&*model, view, &draw, layout == "direction-pdf"),
+            e = match self.parts.contains(&Some(Component::Azimuth)) {
+                true => angles(&draw),
+                false => direction(&*model, view, &draw, self.parts.contains(&None)),
             };
             if e.error[..4].iter().all(|e| *e <= tolerance) || e.value.iter().any(|v| v.is_nan()) {
                 break;

@@ -3,7 +3,9 @@
 //! A shader reads `PH = (2 texel)^10` and shades `max(PH F / |L + V|^2, 0) * ndotl * rho_s`. PH is pi D: it has no
 //! 1 / pi, as the chapter's lights carry it.
 
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::{Estimate, MAX_CHANNELS};
@@ -15,19 +17,24 @@ pub static INFO: TableInfo = TableInfo {
     title: "Kelemen/Szirmay-Kalos Beckmann texture (GPU Gems 3)",
     formula: "texel = PH^0.1 / 2, PH = exp(-tan^2(acos mu_m) / m^2) / (m^2 mu_m^4)",
     sources: &[
-        (cite::DEON_LUEBKE_2007, "section 14.2.3, listing 14-1"),
-        (cite::KELEMEN_2001, "section 2, the Beckmann factor"),
+        Source::new(cite::DEON_LUEBKE_2007, "section 14.2.3, listing 14-1"),
+        Source::new(cite::KELEMEN_2001, "section 2, the Beckmann factor"),
     ],
     coordinates: &["mu_m", "m"],
     layouts: &[Layout {
         id: "tenth-root",
         doc: "PH = (2 texel)^10",
-        channels: &[ChannelInfo { id: "kelemen.texel", meaning: "0.5 PH(mu_m, m)^0.1", range: [0.0, 1.0] }],
+        channels: &[ChannelInfo {
+            id: "kelemen.texel",
+            meaning: "0.5 PH(mu_m, m)^0.1",
+            range: [0.0, 1.0],
+            role: Role::DistributionRoot,
+        }],
     }],
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: &[],
-    laws: &["finite", "range"],
+    laws: &["finite", "range", "normalised", "honest"],
     axes: default_axes,
     notes: "m below 1/32 does not fit: the texel at mu_m = 1 would exceed 1, which is a finding, not a clamp.",
     bind,

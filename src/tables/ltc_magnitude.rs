@@ -3,8 +3,11 @@
 //! A shader scales the form factor of a light by `F0 magnitude + (F90 - F0) fresnel`.
 
 use super::integral::{Functional, integrate};
+use super::role::{Lobe, Weight};
 use super::sweep::Sweep;
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Direction, Grid, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
@@ -12,19 +15,26 @@ use crate::terms::sphere_light;
 
 const UNIT: [f64; 2] = [0.0, 1.0];
 
-const MAGNITUDE: ChannelInfo =
-    ChannelInfo { id: "ltc.magnitude", meaning: "int f mu_i dwi, f without its Fresnel factor", range: UNIT };
+const MAGNITUDE: ChannelInfo = ChannelInfo {
+    id: "ltc.magnitude",
+    meaning: "int f mu_i dwi, f without its Fresnel factor",
+    range: UNIT,
+    role: Role::Split(Lobe::White, Weight::One, 1.0),
+};
 const FRESNEL: ChannelInfo = ChannelInfo {
     id: "ltc.fresnel",
     meaning: "int f (1 - wo.wh)^5 mu_i dwi, f without its Fresnel factor",
     range: UNIT,
+    role: Role::Split(Lobe::White, Weight::Schlick, 1.0),
 };
-const ZERO: ChannelInfo = ChannelInfo { id: "ltc.zero", meaning: "0: not used", range: UNIT };
+const ZERO: ChannelInfo =
+    ChannelInfo { id: "ltc.zero", meaning: "0: not used", range: UNIT, role: Role::Unused };
 const SPHERE: ChannelInfo = ChannelInfo {
     id: "ltc.sphere",
     meaning: "form factor of a sphere cut by the horizon over sin^2(sigma), by the coordinates of the texture: \
         x = (cos(omega) + 1) / 2, y = sin^2(sigma)",
     range: UNIT,
+    role: Role::SphereForm,
 };
 
 /// Registry entry.
@@ -33,8 +43,9 @@ pub static INFO: TableInfo = TableInfo {
     title: "LTC magnitude and Fresnel terms",
     formula: "magnitude = int f mu_i dwi, fresnel = int f (1 - wo.wh)^5 mu_i dwi",
     sources: &[
-        (cite::HEITZ_2016, "section 4 (the norm of a lobe)"),
-        (cite::SNYDER_1996, "irradiance of a spherical light"),
+        Source::new(cite::HEITZ_2016, "section 4 (the norm of a lobe)").of(|role| role != Role::SphereForm),
+        Source::new(cite::SNYDER_1996, "irradiance of a spherical light")
+            .of(|role| matches!(role, Role::SphereForm)),
     ],
     coordinates: &["mu"],
     layouts: &[
@@ -52,7 +63,7 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Free(&[]),
     model: ModelUse::Any("ggx"),
     params: &[],
-    laws: &["finite", "range", "energy", "cross-check", "reciprocity"],
+    laws: &["finite", "range", "energy", "cross-check", "reciprocity", "honest"],
     axes: || axes(0.0),
     notes: "Of a model with a Fresnel factor that can be split off, f is taken without it. The sphere channel is not a function of view and \
         roughness: it sits on the texture's own two coordinates, whatever the axes are, and a clamp on an axis must not \
@@ -76,16 +87,31 @@ pub(super) fn axes(least_roughness: f64) -> Vec<Axis> {
         .collect()
 }
 
+/// What a channel is.
+#[derive(Clone, Copy)]
+enum Part {
+    Magnitude,
+    Fresnel,
+    Zero,
+    Sphere,
+}
+
 struct Magnitude {
     sweep: Sweep,
     grid: Grid,
-    channels: Vec<&'static str>,
+    parts: Vec<Part>,
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     let splits = spec.model.as_ref().is_some_and(|(info, _)| info.splits);
-    let channels: Vec<&'static str> = spec.layout.ids().collect();
-    Ok(Box::new(Magnitude { sweep: Sweep::new(spec, splits)?, grid: spec.grid.clone(), channels }))
+    let parts = spec.each(|role| match role {
+        Role::Split(_, Weight::One, _) => Some(Part::Magnitude),
+        Role::Split(_, Weight::Schlick, _) => Some(Part::Fresnel),
+        Role::Unused => Some(Part::Zero),
+        Role::SphereForm => Some(Part::Sphere),
+        _ => None,
+    })?;
+    Ok(Box::new(Magnitude { sweep: Sweep::new(spec, splits)?, grid: spec.grid.clone(), parts }))
 }
 
 impl Baker for Magnitude {
@@ -94,12 +120,12 @@ impl Baker for Magnitude {
         let functionals = [Functional::One, Functional::Schlick];
         let both = integrate(&*model, self.sweep.view(at), &functionals, tolerance)?;
         let mut e = Estimate { evaluations: both.evaluations, ..Estimate::exact([0.0; MAX_CHANNELS]) };
-        for (i, id) in self.channels.iter().enumerate() {
-            (e.value[i], e.error[i]) = match *id {
-                "ltc.magnitude" => (both.value[0], both.error[0]),
-                "ltc.fresnel" => (both.value[1], both.error[1]),
-                "ltc.sphere" => (self.sphere(at), 1e-12),
-                _ => (0.0, 0.0),
+        for (i, part) in self.parts.iter().enumerate() {
+            (e.value[i], e.error[i]) = match part {
+                Part::Magnitude => (both.value[0], both.error[0]),
+                Part::Fresnel => (both.value[1], both.error[1]),
+                Part::Sphere => (self.sphere(at), 1e-12),
+                Part::Zero => (0.0, 0.0),
             };
         }
         Ok(e)

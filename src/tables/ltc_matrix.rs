@@ -4,8 +4,11 @@
 //! the xz plane, and adds the edges up in closed form. The energy is in the table `ltc-magnitude`.
 
 use super::ltc_fit::{self, Family, Fitted};
+use super::role::{Distance, Entry, Fitted as Kind, Light, Lobe, Side};
 use super::sweep::Sweep;
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError, finite};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError, finite,
+};
 use crate::cite;
 use crate::grid::provenance::{Residual, Spread};
 use crate::grid::table::{Extreme, Table};
@@ -17,31 +20,40 @@ use rayon::prelude::*;
 const WIDE: [f64; 2] = [-3.4e38, 3.4e38];
 const UNIT: [f64; 2] = [0.0, 1.0];
 
-const fn entry(id: &'static str, meaning: &'static str) -> ChannelInfo {
-    ChannelInfo { id, meaning, range: WIDE }
+const fn entry(id: &'static str, meaning: &'static str, entry: Entry) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: WIDE, role: Role::Matrix(Lobe::White, entry) }
 }
 
-const fn unit(id: &'static str, meaning: &'static str) -> ChannelInfo {
-    ChannelInfo { id, meaning, range: UNIT }
+const fn unit(id: &'static str, meaning: &'static str, role: Role) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: UNIT, role }
 }
 
-const M11: ChannelInfo = entry("ltc.m11", "m11 / m22 of the inverse matrix");
-const M31: ChannelInfo = entry("ltc.m31", "m31 / m22 of the inverse matrix (row z, column x)");
-const M13: ChannelInfo = entry("ltc.m13", "m13 / m22 of the inverse matrix (row x, column z)");
-const M33: ChannelInfo = entry("ltc.m33", "m33 / m22 of the inverse matrix");
+const fn distance(family: Kind, distance: Distance) -> Role {
+    Role::FitDistance(Lobe::White, family, distance)
+}
+
+const M11: ChannelInfo = entry("ltc.m11", "m11 / m22 of the inverse matrix", Entry::M11);
+const M31: ChannelInfo = entry("ltc.m31", "m31 / m22 of the inverse matrix (row z, column x)", Entry::M31);
+const M13: ChannelInfo = entry("ltc.m13", "m13 / m22 of the inverse matrix (row x, column z)", Entry::M13);
+const M33: ChannelInfo = entry("ltc.m33", "m33 / m22 of the inverse matrix", Entry::M33);
 const L3: ChannelInfo = ChannelInfo {
     id: "ltc.l3",
     meaning: "(int |f mu_i / E - D|^3 / int (f mu_i / E)^3)^(1/3), E = int f mu_i",
     range: [0.0, 2.0],
+    role: distance(Kind::Even, Distance::Cubic),
 };
-const VARIATION: ChannelInfo = unit("ltc.variation", "1/2 int |f mu_i / E - D|, E = int f mu_i");
+const VARIATION: ChannelInfo = unit(
+    "ltc.variation",
+    "1/2 int |f mu_i / E - D|, E = int f mu_i",
+    distance(Kind::Even, Distance::Variation),
+);
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
     id: "ltc-matrix",
     title: "LTC matrices",
     formula: "the M^-1 that makes int |f mu_i / E - D|^3 least; D(w) = max(0, v.z) det(M^-1) / (pi |v|^4), v = M^-1 w",
-    sources: &[(cite::HEITZ_2016, "Eq. 1 and 3 (D), section 4 (the fit)")],
+    sources: &[Source::new(cite::HEITZ_2016, "Eq. 1 and 3 (D), section 4 (the fit)")],
     coordinates: &["mu"],
     layouts: &[
         Layout {
@@ -53,10 +65,10 @@ pub static INFO: TableInfo = TableInfo {
             id: "over-m33",
             doc: "M^-1 = [[z11, 0, z13], [0, z22, 0], [z31, 0, 1]], as HDRP reads it; grows as 1 / alpha",
             channels: &[
-                entry("ltc.z11", "m11 / m33 of the inverse matrix"),
-                entry("ltc.z31", "m31 / m33 of the inverse matrix (row z, column x)"),
-                entry("ltc.z22", "m22 / m33 of the inverse matrix"),
-                entry("ltc.z13", "m13 / m33 of the inverse matrix (row x, column z)"),
+                entry("ltc.z11", "m11 / m33 of the inverse matrix", Entry::Z11),
+                entry("ltc.z31", "m31 / m33 of the inverse matrix (row z, column x)", Entry::Z31),
+                entry("ltc.z22", "m22 / m33 of the inverse matrix", Entry::Z22),
+                entry("ltc.z13", "m13 / m33 of the inverse matrix (row x, column z)", Entry::Z13),
             ],
         },
         Layout {
@@ -73,19 +85,28 @@ pub static INFO: TableInfo = TableInfo {
             id: "sheared",
             doc: "M^-1 = [[a, 0, b], [0, a, 0], [0, 0, 1]] and the albedo, as the sheen of Zeltner et al. is stored",
             channels: &[
-                entry("ltc.a", "a of the sheared lobe nearest to the model"),
-                entry("ltc.b", "b of the sheared lobe nearest to the model"),
-                unit("ltc.reflectance", "int f mu_i dwi"),
+                entry("ltc.a", "a of the sheared lobe nearest to the model", Entry::A),
+                entry("ltc.b", "b of the sheared lobe nearest to the model", Entry::B),
+                unit("ltc.reflectance", "int f mu_i dwi", Role::Albedo(Lobe::White, Light::All, Side::Above)),
             ],
         },
     ],
     mix: Mix::Free(&[
-        ChannelInfo { id: "ltc.sheared-l3", meaning: "as ltc.l3, of the sheared lobe", range: [0.0, 2.0] },
-        unit("ltc.sheared-variation", "as ltc.variation, of the sheared lobe"),
+        ChannelInfo {
+            id: "ltc.sheared-l3",
+            meaning: "as ltc.l3, of the sheared lobe",
+            range: [0.0, 2.0],
+            role: distance(Kind::Sheared, Distance::Cubic),
+        },
+        unit(
+            "ltc.sheared-variation",
+            "as ltc.variation, of the sheared lobe",
+            distance(Kind::Sheared, Distance::Variation),
+        ),
     ]),
     model: ModelUse::Any("ggx"),
     params: &[],
-    laws: &["range", "lobe", "reciprocity"],
+    laws: &["range", "energy", "lobe", "cross-check", "reciprocity", "honest"],
     axes: || super::ltc_magnitude::axes(LEAST_ROUGHNESS),
     notes: "Errors are those of the best matrix, not of its lobe: how well the lobe fits is in the channels ltc.l3 and ltc.variation and, as largest \
         and mean, in every file. Broad lobes leave the matrix loose, so entries cost more than fits: ask for 1e-3, not less. A \
@@ -99,7 +120,25 @@ const LEAST_ROUGHNESS: f64 = 0.003_162_277_660_168_379_5;
 
 struct Matrix {
     sweep: Sweep,
-    channels: Vec<&'static str>,
+    roles: Vec<Role>,
+    parts: Vec<Part>,
+}
+
+/// What a channel is.
+#[derive(Clone, Copy)]
+enum Part {
+    Entry(Entry),
+    Distance(Kind, Distance),
+    Albedo,
+}
+
+fn part(role: Role) -> Option<Part> {
+    match role {
+        Role::Matrix(_, entry) => Some(Part::Entry(entry)),
+        Role::FitDistance(_, family, distance) => Some(Part::Distance(family, distance)),
+        Role::Albedo(..) => Some(Part::Albedo),
+        _ => None,
+    }
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
@@ -110,14 +149,15 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         return Err(BindError::IdleAxis { kind: INFO.id, axis: "phi", allowed });
     }
     let splits = spec.model.as_ref().is_some_and(|(info, _)| info.splits);
-    Ok(Box::new(Matrix { sweep: Sweep::new(spec, splits)?, channels: spec.layout.ids().collect() }))
+    Ok(Box::new(Matrix { sweep: Sweep::new(spec, splits)?, roles: spec.roles(), parts: spec.each(part)? }))
 }
 
-/// Which fit a channel is taken from.
-fn family(id: &str) -> Family {
-    match id {
-        "ltc.a" | "ltc.b" | "ltc.sheared-l3" | "ltc.sheared-variation" => Family::Sheared,
-        _ => Family::Even,
+/// Which fit a channel is taken from; an albedo comes with either.
+fn family(part: Part) -> Option<Family> {
+    match part {
+        Part::Entry(Entry::A | Entry::B) | Part::Distance(Kind::Sheared, _) => Some(Family::Sheared),
+        Part::Entry(_) | Part::Distance(Kind::Even, _) => Some(Family::Even),
+        Part::Albedo => None,
     }
 }
 
@@ -125,29 +165,23 @@ impl Baker for Matrix {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
         let (model, view) = (self.sweep.model(at)?, self.sweep.view(at));
         let mut e = Estimate { evaluations: 0, ..Estimate::exact([0.0; MAX_CHANNELS]) };
+        let sheared = self.parts.iter().any(|p| family(*p) == Some(Family::Sheared));
+        let shared = if sheared { Family::Sheared } else { Family::Even };
         for wanted in [Family::Even, Family::Sheared] {
-            let sheared = self.channels.iter().any(|id| family(id) == Family::Sheared);
-            // the albedo comes with either
-            let mine = |id: &str| {
-                if id == "ltc.reflectance" && sheared {
-                    wanted == Family::Sheared
-                } else {
-                    family(id) == wanted
-                }
-            };
-            if !self.channels.iter().any(|id| mine(id)) {
+            let mine = |part: Part| family(part).unwrap_or(shared) == wanted;
+            if !self.parts.iter().any(|p| mine(*p)) {
                 continue;
             }
             let fitted = ltc_fit::fit(&*model, view, wanted, |f| {
                 // NaN is not content
-                self.channels.iter().filter(|id| mine(id)).all(|id| channel(id, f).1 <= tolerance)
+                self.parts.iter().filter(|p| mine(**p)).all(|p| channel(*p, f).1 <= tolerance)
             })?;
             e.evaluations = e.evaluations.saturating_add(fitted.evaluations);
-            for (i, id) in self.channels.iter().enumerate().filter(|(_, id)| mine(id)) {
-                (e.value[i], e.error[i]) = channel(id, &fitted);
+            for (i, part) in self.parts.iter().enumerate().filter(|(_, p)| mine(**p)) {
+                (e.value[i], e.error[i]) = channel(*part, &fitted);
             }
         }
-        finite(e, self.channels.len())
+        finite(e, self.parts.len())
     }
 
     fn rule(&self) -> String {
@@ -179,7 +213,7 @@ impl Baker for Matrix {
 impl Matrix {
     /// L3 error and total variation of the matrix of a texel, if the table holds one.
     fn judge(&self, table: &Table, texel: usize) -> Option<[f64; 2]> {
-        let inverse = stored(table, texel)?;
+        let inverse = stored(&self.roles, table.at(texel))?;
         let point = table.grid.texel(texel);
         let model = self.sweep.model(point.values()).ok()?;
         let fit = ltc_fit::judge(&*model, self.sweep.view(point.values()), &inverse, JUDGED_AT).ok()?;
@@ -190,41 +224,43 @@ impl Matrix {
 /// Level of the charts at which the lobes of a finished table are measured.
 const JUDGED_AT: f64 = 11.0;
 
-/// The inverse matrix that a texel holds, in whichever layout.
+/// The inverse matrix that the values of a texel hold, in whichever layout.
 #[must_use]
-pub fn stored(table: &Table, texel: usize) -> Option<Inverse> {
-    let values = table.at(texel);
-    let get = |id: &str| table.channels.iter().position(|c| c.id == id).map(|i| values[i]);
+pub fn stored(roles: &[Role], values: &[f64]) -> Option<Inverse> {
+    let get = |entry: Entry| {
+        let is = |role: &Role| matches!(role, Role::Matrix(_, e) if *e == entry);
+        roles.iter().position(is).and_then(|i| values.get(i)).copied()
+    };
     if let (Some(m11), Some(m31), Some(m13), Some(m33)) =
-        (get("ltc.m11"), get("ltc.m31"), get("ltc.m13"), get("ltc.m33"))
+        (get(Entry::M11), get(Entry::M31), get(Entry::M13), get(Entry::M33))
     {
         return Some(Inverse { m11, m13, m22: 1.0, m31, m33 });
     }
     if let (Some(m11), Some(m31), Some(m22), Some(m13)) =
-        (get("ltc.z11"), get("ltc.z31"), get("ltc.z22"), get("ltc.z13"))
+        (get(Entry::Z11), get(Entry::Z31), get(Entry::Z22), get(Entry::Z13))
     {
         return Some(Inverse { m11, m13, m22, m31, m33: 1.0 });
     }
-    let (a, b) = (get("ltc.a")?, get("ltc.b")?);
+    let (a, b) = (get(Entry::A)?, get(Entry::B)?);
     Some(Inverse { m11: a, m13: b, m22: a, m31: 0.0, m33: 1.0 })
 }
 
 /// Value and error of a channel.
-fn channel(id: &str, fitted: &Fitted) -> (f64, f64) {
+fn channel(part: Part, fitted: &Fitted) -> (f64, f64) {
     let (m, fit, error) = (&fitted.fit.inverse, &fitted.fit, &fitted.error);
     // over m33, an error of m33 counts too
     let over_m33 = |v: f64| (v / m.m33, error.entries * (1.0 + (v / m.m33).abs()) / m.m33.abs());
-    match id {
-        "ltc.m11" => (m.m11, error.entries),
-        "ltc.m31" => (m.m31, error.entries),
-        "ltc.m13" => (m.m13, error.entries),
-        "ltc.m33" => (m.m33, error.entries),
-        "ltc.z11" => over_m33(m.m11),
-        "ltc.z31" => over_m33(m.m31),
-        "ltc.z22" | "ltc.a" => over_m33(m.m22),
-        "ltc.z13" | "ltc.b" => over_m33(m.m13),
-        "ltc.l3" | "ltc.sheared-l3" => (fit.l3, error.l3),
-        "ltc.variation" | "ltc.sheared-variation" => (fit.variation, error.variation),
-        _ => (fit.albedo, error.albedo),
+    match part {
+        Part::Entry(Entry::M11) => (m.m11, error.entries),
+        Part::Entry(Entry::M31) => (m.m31, error.entries),
+        Part::Entry(Entry::M13) => (m.m13, error.entries),
+        Part::Entry(Entry::M33) => (m.m33, error.entries),
+        Part::Entry(Entry::Z11) => over_m33(m.m11),
+        Part::Entry(Entry::Z31) => over_m33(m.m31),
+        Part::Entry(Entry::Z22 | Entry::A) => over_m33(m.m22),
+        Part::Entry(Entry::Z13 | Entry::B) => over_m33(m.m13),
+        Part::Distance(_, Distance::Cubic) => (fit.l3, error.l3),
+        Part::Distance(_, Distance::Variation) => (fit.variation, error.variation),
+        Part::Albedo => (fit.albedo, error.albedo),
     }
 }

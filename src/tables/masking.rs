@@ -1,6 +1,8 @@
 //! Masking G1 of a rough surface over the cosine and the width.
 
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
@@ -17,26 +19,37 @@ pub(super) const DISTRIBUTION: Param = Param::choice(
     &["ggx", "beckmann", "schlick-ibl", "schlick-analytic", "schlick"],
 );
 
+/// Those that are Schlick's rational form.
+pub(super) const SCHLICK: &[&str] = &["schlick-ibl", "schlick-analytic", "schlick"];
+
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
     id: "masking",
     title: "Masking G1",
     formula: "Smith: G1 = 1 / (1 + Lambda(mu)); Schlick: G1 = mu / (mu (1 - k) + k)",
     sources: &[
-        (cite::HEITZ_2014, "Eq. 42 (Smith), Eq. 72 (Lambda of GGX), section 5.2 (of Beckmann)"),
-        (cite::SCHLICK_1994, "Eq. 19 (number recalled)"),
-        (cite::KARIS_2013, "Eq. 4"),
+        Source::new(cite::HEITZ_2014, "Eq. 42 (Smith), Eq. 72 (Lambda of GGX)")
+            .when("distribution", &["ggx"]),
+        Source::new(cite::HEITZ_2014, "Eq. 42 (Smith), section 5.2 (Lambda of Beckmann)")
+            .when("distribution", &["beckmann"]),
+        Source::new(cite::SCHLICK_1994, "Eq. 19 (number recalled)").when("distribution", SCHLICK),
+        Source::new(cite::KARIS_2013, "Eq. 4 (k)").when("distribution", &["schlick-ibl", "schlick-analytic"]),
     ],
     coordinates: &["mu", "alpha"],
     layouts: &[Layout {
         id: "g1",
         doc: "part of the facets facing a direction that is not hidden",
-        channels: &[ChannelInfo { id: "g1", meaning: "G1(mu, alpha)", range: [0.0, 1.0] }],
+        channels: &[ChannelInfo {
+            id: "g1",
+            meaning: "G1(mu, alpha)",
+            range: [0.0, 1.0],
+            role: Role::Masking,
+        }],
     }],
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: &[DISTRIBUTION],
-    laws: &["finite", "range", "monotone"],
+    laws: &["finite", "range", "monotone", "honest"],
     axes: default_axes,
     notes: "G1 falls to 0 at the horizon on the scale mu ~ alpha: couple the axis of mu to alpha, as the default axes do.",
     bind,

@@ -7,8 +7,11 @@
 //!
 //! About a quarter of the texels have wi or wo below the horizon. They hold 0, as the model gives it.
 
+use super::role::{Band, Lobe};
 use super::sweep::Sweep;
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
@@ -20,8 +23,8 @@ pub const THETA: usize = 90;
 /// Texels along phi_d.
 pub const PHI: usize = 180;
 
-const fn channel(id: &'static str, meaning: &'static str) -> ChannelInfo {
-    ChannelInfo { id, meaning, range: [0.0, 3.4e38] }
+const fn channel(id: &'static str, meaning: &'static str, band: Band) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [0.0, 3.4e38], role: Role::Value(Lobe::Model, band) }
 }
 
 /// Registry entry.
@@ -30,17 +33,17 @@ pub static INFO: TableInfo = TableInfo {
     title: "Tabulated BRDF on the grid of MERL",
     formula: "f(theta_h, theta_d, phi_d), wi = R_y(theta_h) (sin theta_d cos phi_d, sin theta_d sin phi_d, cos theta_d), wo its mirror image at wh",
     sources: &[
-        (cite::MATUSIK_2003, "section 3 and the published reader of the database"),
-        (cite::RUSINKIEWICZ_1998, "section 3, half and difference angles"),
+        Source::new(cite::MATUSIK_2003, "section 3 and the published reader of the database"),
+        Source::new(cite::RUSINKIEWICZ_1998, "section 3, half and difference angles"),
     ],
     coordinates: &["phi_d", "theta_d", "theta_h"],
     layouts: &[Layout {
         id: "rgb",
         doc: "f in 1/sr, without the cosine, times the factor of the channel",
         channels: &[
-            channel("merl.r", "red f, 1/sr"),
-            channel("merl.g", "green f, 1/sr"),
-            channel("merl.b", "blue f, 1/sr"),
+            channel("merl.r", "red f, 1/sr", Band::Red),
+            channel("merl.g", "green f, 1/sr", Band::Green),
+            channel("merl.b", "blue f, 1/sr", Band::Blue),
         ],
     }],
     mix: Mix::Layouts,
@@ -50,7 +53,7 @@ pub static INFO: TableInfo = TableInfo {
         Param::number("green", "c_g", "factor of the green channel", [0.0, 1.0], Preset::Value(1.0)),
         Param::number("blue", "c_b", "factor of the blue channel", [0.0, 1.0], Preset::Value(1.0)),
     ],
-    laws: &["finite", "range", "reciprocity"],
+    laws: &["finite", "range", "reciprocity", "honest"],
     axes: default_axes,
     notes: "Isotropic and reciprocal models only. The container `merl:float` takes exactly the default axes. A mirror-like lobe is narrower than the first \
         cells of theta_h (0.011 degrees wide) only below alpha 1e-4.",

@@ -28,28 +28,32 @@ pub mod masking;
 mod memo;
 pub mod merl;
 pub mod ndf;
+mod parts;
 pub mod phase_function;
 pub mod phase_sampling;
 pub mod preintegrated_skin;
 pub mod profile;
+pub mod role;
 pub mod selection;
 pub mod sheen_ltc;
 pub mod sheen_scaling;
 mod sides;
 pub mod skin_transmittance;
+pub mod source;
 pub mod spec;
 pub mod spectrum;
 pub mod sweep;
 pub mod thin_film;
 pub mod visibility;
 
-use crate::cite::Cite;
 use crate::grid::provenance::Residual;
 use crate::grid::{Axis, Channel, Table, table::named};
 use crate::integrate::Estimate;
 use crate::math::figures::exact;
 use crate::models::Param;
+pub use role::Role;
 pub use selection::Selection;
+pub use source::Source;
 pub use spec::{BindError, Bound, Spec};
 
 /// Every table kind, in the order of `list tables`.
@@ -188,13 +192,20 @@ pub struct ChannelInfo {
     pub meaning: &'static str,
     /// Values that it can take.
     pub range: [f64; 2],
+    /// What the number is to a law.
+    pub role: Role,
 }
 
 impl ChannelInfo {
     /// As stored in tables and files.
     #[must_use]
     pub fn channel(&self) -> Channel {
-        Channel { id: self.id.to_owned(), meaning: self.meaning.to_owned(), range: self.range }
+        Channel {
+            id: self.id.to_owned(),
+            meaning: self.meaning.to_owned(),
+            range: self.range,
+            role: self.role.name().to_owned(),
+        }
     }
 }
 
@@ -238,8 +249,8 @@ pub struct TableInfo {
     pub title: &'static str,
     /// Formula.
     pub formula: &'static str,
-    /// Sources with equation numbers.
-    pub sources: &'static [(Cite, &'static str)],
+    /// Sources with equation numbers, each with the channels and parameters that it is a source of.
+    pub sources: &'static [Source],
     /// Quantities that must be on an axis.
     pub coordinates: &'static [&'static str],
     /// Channel layouts; the first is the default.

@@ -1,6 +1,8 @@
 //! The microfacet distribution over the cosine of the microfacet normal and the width.
 
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
@@ -15,24 +17,37 @@ pub static INFO: TableInfo = TableInfo {
     id: "ndf",
     title: "Microfacet distribution D",
     formula: "D(mu_m, alpha); relative layout: pi alpha^2 D = D / D(1)",
-    sources: &[(cite::WALTER_2007, "Eq. 25 (Beckmann), Eq. 33 (GGX)")],
+    sources: &[
+        Source::new(cite::WALTER_2007, "Eq. 25 (Beckmann)").when("distribution", &["beckmann"]),
+        Source::new(cite::WALTER_2007, "Eq. 33 (GGX)").when("distribution", &["ggx"]),
+    ],
     coordinates: &["mu_m", "alpha"],
     layouts: &[
         Layout {
             id: "relative",
             doc: "D = texel / (pi alpha^2)",
-            channels: &[ChannelInfo { id: "ndf.relative", meaning: "pi alpha^2 D(mu_m)", range: [0.0, 1.5] }],
+            channels: &[ChannelInfo {
+                id: "ndf.relative",
+                meaning: "pi alpha^2 D(mu_m)",
+                range: [0.0, 1.5],
+                role: Role::Distribution { relative: true },
+            }],
         },
         Layout {
             id: "absolute",
             doc: "D in 1/sr; at alpha below 0.0023 its peak does not fit a half float",
-            channels: &[ChannelInfo { id: "ndf.d", meaning: "D(mu_m), 1/sr", range: [0.0, 3.4e38] }],
+            channels: &[ChannelInfo {
+                id: "ndf.d",
+                meaning: "D(mu_m), 1/sr",
+                range: [0.0, 3.4e38],
+                role: Role::Distribution { relative: false },
+            }],
         },
     ],
     mix: Mix::Free(&[]),
     model: ModelUse::None,
     params: &[Param::choice("distribution", "which distribution", &["ggx", "beckmann"])],
-    laws: &["finite", "range", "normalised"],
+    laws: &["finite", "range", "normalised", "honest"],
     axes: default_axes,
     notes: "The peak has the width alpha: spread mu_m with `one-minus-power` (fine near mu_m = 1). At alpha -> 0 no fixed axis resolves it. \
         The relative form of Beckmann reaches 4 / e = 1.47 at alpha = 1, off the normal.",
@@ -62,7 +77,10 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         mu: spec.coordinate("mu_m")?,
         alpha: spec.coordinate("alpha")?,
         beckmann: spec.params.choice("distribution") == "beckmann",
-        relative: spec.layout.ids().map(|id| id == "ndf.relative").collect(),
+        relative: spec.each(|role| match role {
+            Role::Distribution { relative } => Some(relative),
+            _ => None,
+        })?,
     }))
 }
 

@@ -1,7 +1,9 @@
 //! Phase functions over the angle of deflection.
 
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
-use crate::cite::{self, Cite};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
+use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::{Param, Params, Preset};
@@ -29,11 +31,13 @@ pub(super) const PARAMS: &[Param] = &[
 ];
 
 /// Sources of the phase functions.
-pub(super) const SOURCES: &[(Cite, &str)] = &[
-    (cite::HENYEY_GREENSTEIN_1941, "Eq. 2"),
-    (cite::BORN_WOLF_1999, "section 14.5 (Rayleigh)"),
-    (cite::DRAINE_2003, "Eq. 5 (number recalled)"),
-    (cite::JENDERSIE_DEON_2023, "Eq. 7 to 10 (fog)"),
+pub(super) const SOURCES: &[Source] = &[
+    Source::new(cite::HENYEY_GREENSTEIN_1941, "Eq. 2").when("phase", &["henyey-greenstein", "fog"]),
+    Source::new(cite::BORN_WOLF_1999, "section 14.5 (Rayleigh)").when("phase", &["rayleigh"]),
+    Source::new(cite::DRAINE_2003, "Eq. 5 (number recalled)").when("phase", &["draine", "fog"]),
+    Source::new(cite::JENDERSIE_DEON_2023, "Eq. 7 to 10 (fog)").when("phase", &["fog"]),
+    Source::new(cite::CHANDRASEKHAR_1960, "section 3 (isotropic scattering; number recalled)")
+        .when("phase", &["isotropic"]),
 ];
 
 /// Registry entry.
@@ -47,18 +51,28 @@ pub static INFO: TableInfo = TableInfo {
         Layout {
             id: "density",
             doc: "scattered radiance per incident radiance, per steradian",
-            channels: &[ChannelInfo { id: "phase", meaning: "p(theta), 1/sr", range: [0.0, 3.4e38] }],
+            channels: &[ChannelInfo {
+                id: "phase",
+                meaning: "p(theta), 1/sr",
+                range: [0.0, 3.4e38],
+                role: Role::Phase { relative: false },
+            }],
         },
         Layout {
             id: "relative",
             doc: "p / p_max, p_max the largest value over all angles (stated by `rule` in the file)",
-            channels: &[ChannelInfo { id: "phase.relative", meaning: "p(theta) / p_max", range: [0.0, 1.0] }],
+            channels: &[ChannelInfo {
+                id: "phase.relative",
+                meaning: "p(theta) / p_max",
+                range: [0.0, 1.0],
+                role: Role::Phase { relative: true },
+            }],
         },
     ],
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: PARAMS,
-    laws: &["finite", "range", "total"],
+    laws: &["finite", "range", "total", "honest"],
     axes: default_axes,
     notes: "theta is the angle between the directions of travel: 0 is forward. Some renderers pass the cosine of two directions that both point away, \
         which has the other sign. Axes: deflection, and g.",
@@ -140,7 +154,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         deflection: spec.coordinate("deflection")?,
         g: spec.axis("g"),
         params: spec.params.clone(),
-        relative: spec.layout.id == "relative",
+        relative: spec.roles().contains(&Role::Phase { relative: true }),
     }))
 }
 

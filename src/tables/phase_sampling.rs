@@ -1,7 +1,7 @@
 //! Angles with the density of a phase function: the inverse of its cumulative distribution.
 
 use super::phase_function::{PARAMS, Phase, SOURCES};
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Spec, TableInfo, TexelError};
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::Params;
@@ -18,18 +18,28 @@ pub static INFO: TableInfo = TableInfo {
         Layout {
             id: "cosine",
             doc: "cosine of the deflection; the azimuth is 2 pi times a second number",
-            channels: &[ChannelInfo { id: "cos_theta", meaning: "cos theta(u)", range: [-1.0, 1.0] }],
+            channels: &[ChannelInfo {
+                id: "cos_theta",
+                meaning: "cos theta(u)",
+                range: [-1.0, 1.0],
+                role: Role::PhaseQuantile { angle: false },
+            }],
         },
         Layout {
             id: "angle",
             doc: "the deflection itself, falling from pi to 0: finer near the peak",
-            channels: &[ChannelInfo { id: "theta", meaning: "theta(u), rad", range: [0.0, PI] }],
+            channels: &[ChannelInfo {
+                id: "theta",
+                meaning: "theta(u), rad",
+                range: [0.0, PI],
+                role: Role::PhaseQuantile { angle: true },
+            }],
         },
     ],
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: PARAMS,
-    laws: &["range", "monotone"],
+    laws: &["range", "monotone", "honest"],
     axes: default_axes,
     notes: "u = 1 is forward. Axes: u, and g.",
     bind,
@@ -51,7 +61,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         u: spec.coordinate("u")?,
         g: spec.axis("g"),
         params: spec.params.clone(),
-        angle: spec.layout.id == "angle",
+        angle: spec.roles().contains(&Role::PhaseQuantile { angle: true }),
     }))
 }
 

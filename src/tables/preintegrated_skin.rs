@@ -17,12 +17,19 @@
 //! Integrals run over the angle, split at the kinks of the clamped cosine and at the scales of the profile.
 
 use super::profile::{self, Profile, Rgb};
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::role::Band;
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::{Estimate, MAX_CHANNELS, Sums, line};
 use crate::models::{Param, ParamError};
 use std::f64::consts::{FRAC_PI_2, PI};
+
+const fn channel(id: &'static str, meaning: &'static str, band: Band) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [0.0, 1.0], role: Role::BlurredLight(band) }
+}
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
@@ -30,26 +37,21 @@ pub static INFO: TableInfo = TableInfo {
     title: "Pre-integrated skin",
     formula: "ring: D = int_-pi^pi max(0, cos(theta + x)) R(2 r sin(|x|/2)) dx / int_-pi^pi R(2 r sin(|x|/2)) dx; \
         sphere: the same over the area of the sphere",
-    sources: &[
-        (cite::PENNER_2011, "the integral of the diffusion profile over a ring"),
-        (cite::DEON_LUEBKE_2007, "Fig. 14-13 (profile skin)"),
-        (cite::CHRISTENSEN_BURLEY_2015, "Eq. 3, 5, 6 and 8 (profile burley)"),
-        (cite::JENSEN_2002, "Eq. 2 (profile dipole)"),
-    ],
+    sources: &SOURCES,
     coordinates: &["ndotl", "curvature"],
     layouts: &[Layout {
         id: "rgb",
         doc: "diffuse light = irradiance of the light at normal incidence * albedo / pi * texel",
         channels: &[
-            ChannelInfo { id: "skin.r", meaning: "D of red light", range: [0.0, 1.0] },
-            ChannelInfo { id: "skin.g", meaning: "D of green light", range: [0.0, 1.0] },
-            ChannelInfo { id: "skin.b", meaning: "D of blue light", range: [0.0, 1.0] },
+            channel("skin.r", "D of red light", Band::Red),
+            channel("skin.g", "D of green light", Band::Green),
+            channel("skin.b", "D of blue light", Band::Blue),
         ],
     }],
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: &PARAMS,
-    laws: &["finite", "range", "total"],
+    laws: &["finite", "range", "total", "honest"],
     axes: default_axes,
     notes: "The row of curvature 0 is clamp(N.L) exactly. Penner's axes: ndotl from -1 to 1, curvature 1/r in 1/mm; lengths in mm. \
         Profile burley needs over = sphere: on a ring its 1/r makes both integrals diverge.",
@@ -61,6 +63,13 @@ static PARAMS: [Param; 1 + profile::PARAMS.len()] = profile::with(Param::choice(
     "what is blurred: a ring, as published, or the sphere",
     &["ring", "sphere"],
 ));
+
+/// Own sources, and those of profiles.
+static SOURCES: [Source; 2 + profile::SOURCES.len()] = profile::with_sources([
+    Source::new(cite::PENNER_2011, "the integral of the diffusion profile over a ring")
+        .when("over", &["ring"]),
+    Source::new(cite::PENNER_2011, "the idea, here over the sphere").when("over", &["sphere"]),
+]);
 
 fn default_axes() -> Vec<Axis> {
     // odd, so that the terminator, a kink where nothing is curved, lies on a texel: four times better than 128

@@ -4,7 +4,8 @@
 //! A profile R(r) is the part of a thin beam that leaves per area at distance r. Here it is divided by its total
 //! `2 pi int R r dr`: the albedo of skin comes from a texture. [`Profile::total`] holds what was divided by.
 
-use super::{BindError, Spec};
+use super::{BindError, Source, Spec};
+use crate::cite;
 use crate::models::{Column, Param, ParamError, Params, Preset};
 use crate::terms::burley_diffusion::{self, Fit};
 use crate::terms::dipole::{Dipole, internal_reflectance};
@@ -80,6 +81,27 @@ pub const fn with(own: Param) -> [Param; 1 + PARAMS.len()] {
     let mut i = 0;
     while i < PARAMS.len() {
         all[1 + i] = PARAMS[i];
+        i += 1;
+    }
+    all
+}
+
+/// Sources of the profiles.
+pub const SOURCES: [Source; 4] = [
+    Source::new(cite::DEON_LUEBKE_2007, "Fig. 14-13 (profile skin)").when("profile", &["skin"]),
+    Source::new(cite::DEON_LUEBKE_2007, "section 14.4.3 (sums of Gaussians)").when("profile", &["gaussians"]),
+    Source::new(cite::CHRISTENSEN_BURLEY_2015, "Eq. 3, 5, 6, 8 and 11 (profile burley)")
+        .when("profile", &["burley"]),
+    Source::new(cite::JENSEN_2002, "Eq. 2 and 3 (profile dipole)").when("profile", &["dipole"]),
+];
+
+/// [`SOURCES`] after those of the kind's own; `M` is `N` + 4.
+#[must_use]
+pub const fn with_sources<const N: usize, const M: usize>(own: [Source; N]) -> [Source; M] {
+    let mut all = [SOURCES[0]; M];
+    let mut i = 0;
+    while i < M {
+        all[i] = if i < N { own[i] } else { SOURCES[i - N] };
         i += 1;
     }
     all

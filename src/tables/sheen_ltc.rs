@@ -4,7 +4,10 @@
 //! The authors walked at random for two days and ended each walk after 16 events, which at grazing views of thin fibres is too early.
 
 use super::ltc_fit::{self, Sheared};
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError, finite};
+use super::role::Entry;
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError, finite,
+};
 use crate::cite;
 use crate::grid::provenance::{Residual, Spread};
 use crate::grid::table::{Extreme, Table};
@@ -18,18 +21,28 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-const A: ChannelInfo = ChannelInfo { id: "sheen.a", meaning: "a of the sheared lobe", range: [0.0, 2.0] };
-const B: ChannelInfo = ChannelInfo { id: "sheen.b", meaning: "b of the sheared lobe", range: [-1.0, 1.0] };
-const R: ChannelInfo =
-    ChannelInfo { id: "sheen.reflectance", meaning: "R, the albedo of the layer", range: [0.0, 1.0] };
+const A: ChannelInfo = ChannelInfo {
+    id: "sheen.a",
+    meaning: "a of the sheared lobe",
+    range: [0.0, 2.0],
+    role: Role::FibreLobe(Entry::A, None),
+};
+const B: ChannelInfo = ChannelInfo {
+    id: "sheen.b",
+    meaning: "b of the sheared lobe",
+    range: [-1.0, 1.0],
+    role: Role::FibreLobe(Entry::B, None),
+};
+const R: ChannelInfo = unit("sheen.reflectance", "R, the albedo of the layer", Role::FibreAlbedo(None));
 const L3: ChannelInfo = ChannelInfo {
     id: "sheen.l3",
     meaning: "(int |f mu_i / R - D|^3 / int (f mu_i / R)^3)^(1/3), over dtheta dphi",
     range: [0.0, 2.0],
+    role: Role::FibreDistance,
 };
 
-const fn unit(id: &'static str, meaning: &'static str) -> ChannelInfo {
-    ChannelInfo { id, meaning, range: [0.0, 1.0] }
+const fn unit(id: &'static str, meaning: &'static str, role: Role) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [0.0, 1.0], role }
 }
 
 /// Registry entry.
@@ -39,8 +52,8 @@ pub static INFO: TableInfo = TableInfo {
     formula: "R = int f mu_i dwi of a layer of SGGX fibres, sigma = r^2; a and b make int |f mu_i / R - D|^3 dtheta dphi least; \
         D(w) = w.z / pi (a / |v|^2)^2, v = (a w.x + b w.z, a w.y, w.z)",
     sources: &[
-        (cite::ZELTNER_2022, "section 3 (the layer, the lobe and the fit)"),
-        (cite::HEITZ_2015, "Eq. 10, 11 and 13 (the fibres)"),
+        Source::new(cite::ZELTNER_2022, "section 3 (the layer, the lobe and the fit)"),
+        Source::new(cite::HEITZ_2015, "Eq. 10, 11 and 13 (the fibres)"),
     ],
     coordinates: &["mu"],
     layouts: &[
@@ -55,16 +68,24 @@ pub static INFO: TableInfo = TableInfo {
             id: "babylon",
             doc: "a = 0.005 + 0.875 r, b = -0.18 + 0.182 g, R = 0.75 b, for eight bits; ends at the ends",
             channels: &[
-                unit("sheen.a-unit", "(a - 0.005) / 0.875, no less than 0, no more than 1"),
-                unit("sheen.b-unit", "(b + 0.18) / 0.182, no less than 0, no more than 1"),
-                unit("sheen.reflectance-unit", "R / 0.75, no more than 1"),
+                unit(
+                    "sheen.a-unit",
+                    "(a - 0.005) / 0.875, no less than 0, no more than 1",
+                    Role::FibreLobe(Entry::A, Some([0.005, 0.875])),
+                ),
+                unit(
+                    "sheen.b-unit",
+                    "(b + 0.18) / 0.182, no less than 0, no more than 1",
+                    Role::FibreLobe(Entry::B, Some([-0.18, 0.182])),
+                ),
+                unit("sheen.reflectance-unit", "R / 0.75, no more than 1", Role::FibreAlbedo(Some(0.75))),
             ],
         },
     ],
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: &[Param::number("r", "r", "roughness of the fibres, sigma = r^2", RANGE, Preset::Value(0.5))],
-    laws: &["finite", "range"],
+    laws: &["finite", "range", "cross-check"],
     axes: default_axes,
     notes: "Unit depth, density and albedo, black ground. The authors' table stores zeros for a and b below R = 3e-6; here they are \
         fitted down to R = 1e-7, and below that to light that was scattered once. Along the normal the lobe is round. Errors are those of \
@@ -116,24 +137,47 @@ impl Medium for Fibres {
 /// Solved layers by roughness and level, each by the thread that needs it first.
 type Solved = Mutex<BTreeMap<(u64, usize), Arc<OnceLock<Option<Slab>>>>>;
 
+/// What a channel is.
+#[derive(Clone, Copy)]
+enum Part {
+    /// a or b; coded: from where and over which length.
+    Lobe {
+        b: bool,
+        coded: Option<[f64; 2]>,
+    },
+    Reflectance {
+        scale: Option<f64>,
+    },
+    Distance,
+}
+
+fn part(role: Role) -> Option<Part> {
+    match role {
+        Role::FibreLobe(entry, coded) => Some(Part::Lobe { b: entry == Entry::B, coded }),
+        Role::FibreAlbedo(scale) => Some(Part::Reflectance { scale }),
+        Role::FibreDistance => Some(Part::Distance),
+        _ => None,
+    }
+}
+
 struct Sheen {
     mu: usize,
     roughness: Option<usize>,
     fixed: f64,
-    channels: Vec<&'static str>,
+    parts: Vec<Part>,
     /// Does any channel need a fit?
     fits: bool,
     solved: Solved,
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
-    let channels: Vec<&'static str> = spec.layout.ids().collect();
-    let fits = channels.iter().any(|id| !id.starts_with("sheen.reflectance"));
+    let parts = spec.each(part)?;
+    let fits = parts.iter().any(|p| !matches!(p, Part::Reflectance { .. }));
     Ok(Box::new(Sheen {
         mu: spec.coordinate("mu")?,
         roughness: spec.axis("r"),
         fixed: spec.params.number("r"),
-        channels,
+        parts,
         fits,
         solved: Mutex::default(),
     }))
@@ -156,8 +200,8 @@ impl Baker for Sheen {
             e.evaluations = e.evaluations.saturating_add(next.lobe.evaluations.max(1));
             found.push(next);
             let [.., first, second, last] = found.as_slice() else { continue };
-            for (i, id) in self.channels.iter().enumerate() {
-                let of = |f: &Found| channel(id, f);
+            for (i, part) in self.parts.iter().enumerate() {
+                let of = |f: &Found| channel(*part, f);
                 e.value[i] = of(last);
                 e.error[i] =
                     TRUST.error(level, (of(first) - of(second)).abs(), (of(second) - of(last)).abs());
@@ -166,7 +210,7 @@ impl Baker for Sheen {
                 break;
             }
         }
-        finite(e, self.channels.len())
+        finite(e, self.parts.len())
     }
 
     fn rule(&self) -> String {
@@ -194,15 +238,16 @@ impl Baker for Sheen {
 const TRUST: Trust = Trust { gain: &[1.0], memory: &[0.25] };
 
 /// Value of a channel.
-fn channel(id: &str, found: &Found) -> f64 {
-    match id {
-        "sheen.a" => found.lobe.a,
-        "sheen.b" => found.lobe.b,
-        "sheen.l3" => found.lobe.l3,
-        "sheen.a-unit" => ((found.lobe.a - 0.005) / 0.875).clamp(0.0, 1.0),
-        "sheen.b-unit" => ((found.lobe.b + 0.18) / 0.182).clamp(0.0, 1.0),
-        "sheen.reflectance-unit" => (found.reflectance / 0.75).min(1.0),
-        _ => found.reflectance,
+fn channel(part: Part, found: &Found) -> f64 {
+    match part {
+        Part::Lobe { b, coded } => {
+            let value = if b { found.lobe.b } else { found.lobe.a };
+            coded.map_or(value, |[from, length]| ((value - from) / length).clamp(0.0, 1.0))
+        }
+        Part::Reflectance { scale } => {
+            scale.map_or(found.reflectance, |scale| (found.reflectance / scale).min(1.0))
+        }
+        Part::Distance => found.lobe.l3,
     }
 }
 

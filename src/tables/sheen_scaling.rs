@@ -4,27 +4,35 @@
 //! extension, with `sheen` the largest component of the colour. A shader that has the colour reads E and forms it itself.
 
 use super::integral::{Functional, integrate};
+use super::role::{Light, Lobe, Side};
 use super::sweep::Sweep;
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Texel};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::{Param, Preset};
 
-const SCALING: ChannelInfo =
-    ChannelInfo { id: "sheen.scaling", meaning: "max(0, 1 - sheen E(mu))", range: [0.0, 1.0] };
-const E: ChannelInfo =
-    ChannelInfo { id: "sheen.e", meaning: "int f(wo, wi) mu_i dwi of the sheen", range: [0.0, 1.0] };
+const SCALING: ChannelInfo = ChannelInfo {
+    id: "sheen.scaling",
+    meaning: "max(0, 1 - sheen E(mu))",
+    range: [0.0, 1.0],
+    role: Role::Scaling(Lobe::Model),
+};
+const E: ChannelInfo = ChannelInfo {
+    id: "sheen.e",
+    meaning: "int f(wo, wi) mu_i dwi of the sheen",
+    range: [0.0, 1.0],
+    role: Role::Albedo(Lobe::Model, Light::All, Side::Above),
+};
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
     id: "sheen-scaling",
     title: "Albedo scaling below a sheen",
     formula: "scaling = 1 - sheen E(mu), E = int f_sheen mu_i dwi",
-    sources: &[
-        (cite::KHR_SHEEN, "the albedo scaling technique"),
-        (cite::ESTEVEZ_KULLA_2017, "Eq. 2 and 3 (f of the sheen)"),
-    ],
+    sources: &[Source::new(cite::KHR_SHEEN, "the albedo scaling technique")],
     coordinates: &["mu"],
     layouts: &[
         Layout {
@@ -44,7 +52,7 @@ pub static INFO: TableInfo = TableInfo {
         [0.0, 1.0],
         Preset::Value(1.0),
     )],
-    laws: &["finite", "range"],
+    laws: &["finite", "range", "honest"],
     axes: default_axes,
     notes: "Axis roughness is glTF's (Charlie's r = roughness^2), axis alpha or r is Charlie's own. The model need not be reciprocal: E belongs to the view. By default roughness is held at 0.27 \
         (r = 0.073) and above, the clamp of productions: below it E exceeds 1 at grazing, and a scaled base would be negative.",
@@ -71,7 +79,11 @@ struct Scaling {
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     Ok(Box::new(Scaling {
         sweep: Sweep::new(spec, false)?,
-        scaling: spec.layout.ids().map(|id| id == "sheen.scaling").collect(),
+        scaling: spec.each(|role| match role {
+            Role::Scaling(_) => Some(true),
+            Role::Albedo(..) => Some(false),
+            _ => None,
+        })?,
         sheen: spec.params.number("sheen"),
     }))
 }

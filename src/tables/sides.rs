@@ -1,38 +1,27 @@
 //! Reflected and transmitted parts of the light along a view, from above the surface and from inside.
 //!
-//! A channel is named `e` (all that leaves the surface), `r` (reflected) or `t` (transmitted), with `.inside` for a view from
-//! below an interface, where the relative index is 1 / eta. Averages have `-avg` in the middle: `t-avg.inside`.
+//! Which part and which side a channel counts is said by its [`Role`]; from inside the relative index is 1 / eta.
 
 use super::integral::{Functional, integrate};
+use super::role::{Light, Role, Side};
 use super::sweep::Sweep;
 use super::{BindError, Spec, TexelError};
 use crate::integrate::{Estimate, MAX_CHANNELS, View};
 use crate::models::Brdf;
 
-/// Which light a channel counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Part {
-    All,
-    Reflected,
-    Transmitted,
-}
-
 /// What a channel holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Wanted {
-    part: Part,
-    inside: bool,
+struct Wanted {
+    part: Light,
+    side: Side,
 }
 
 impl Wanted {
-    fn of(channel: &str) -> Wanted {
-        let (name, inside) = channel.strip_suffix(".inside").map_or((channel, false), |name| (name, true));
-        let part = match name.as_bytes().first() {
-            Some(b'r') => Part::Reflected,
-            Some(b't') => Part::Transmitted,
-            _ => Part::All,
-        };
-        Wanted { part, inside }
+    fn of(role: Role) -> Option<Wanted> {
+        match role {
+            Role::Albedo(_, part, side) | Role::Average(_, part, side) => Some(Wanted { part, side }),
+            _ => None,
+        }
     }
 }
 
@@ -55,18 +44,18 @@ impl Models {
 }
 
 impl Sides {
-    /// From a spec whose channels are named as above.
+    /// From a spec whose channels are albedos or averages.
     ///
     /// # Errors
     /// [`BindError::Model`] if a channel asks for light that the model does not have.
     pub(super) fn new(spec: &Spec) -> Result<Sides, BindError> {
-        let wanted: Vec<Wanted> = spec.layout.ids().map(Wanted::of).collect();
+        let wanted = spec.each(Wanted::of)?;
         let sweep = Sweep::new(spec, false)?;
         let refuse = |why| BindError::Model { kind: spec.kind.id, model: sweep.info().id.to_owned(), why };
-        if wanted.iter().any(|w| w.inside) && sweep.info().param("eta").is_none() {
+        if wanted.iter().any(|w| w.side == Side::Inside) && sweep.info().param("eta").is_none() {
             return Err(refuse("has no parameter eta, so it has no inside"));
         }
-        if wanted.iter().any(|w| w.part == Part::Transmitted) && !sweep.transmits()? {
+        if wanted.iter().any(|w| w.part == Light::Transmitted) && !sweep.transmits()? {
             return Err(refuse("does not transmit; all its light is in channel e or e-avg"));
         }
         Ok(Sides { sweep, wanted })
@@ -79,7 +68,7 @@ impl Sides {
 
     /// True if some channel is seen from inside.
     pub(super) fn inside(&self) -> bool {
-        self.wanted.iter().any(|w| w.inside)
+        self.wanted.iter().any(|w| w.side == Side::Inside)
     }
 
     /// The models at a point.
@@ -87,11 +76,11 @@ impl Sides {
     /// # Errors
     /// [`TexelError::Param`].
     pub(super) fn models(&self, at: &[f64]) -> Result<Models, TexelError> {
-        let build = |inside| {
-            let any = self.wanted.iter().any(|w| w.inside == inside);
-            any.then(|| self.sweep.model_from(at, inside)).transpose()
+        let build = |side| {
+            let any = self.wanted.iter().any(|w| w.side == side);
+            any.then(|| self.sweep.model_from(at, side)).transpose()
         };
-        Ok(Models([build(false)?, build(true)?]))
+        Ok(Models([build(Side::Above)?, build(Side::Inside)?]))
     }
 
     /// The channels at a view, each to the tolerance; reflection and transmission are integrated once for all of them.
@@ -100,12 +89,12 @@ impl Sides {
     /// [`TexelError`].
     pub(super) fn at(&self, models: &Models, view: View, tolerance: f64) -> Result<Estimate, TexelError> {
         let mut all = Estimate { value: [0.0; MAX_CHANNELS], error: [0.0; MAX_CHANNELS], evaluations: 0 };
-        for (inside, model) in [false, true].into_iter().zip(&models.0) {
+        for (side, model) in [Side::Above, Side::Inside].into_iter().zip(&models.0) {
             let Some(model) = model else { continue };
-            let wants = |part| self.wanted.contains(&Wanted { part, inside });
+            let wants = |part| self.wanted.contains(&Wanted { part, side });
             let through = model.transmission().is_some();
             // R and T share the tolerance of their sum
-            let each = if through && wants(Part::All) { 0.5 * tolerance } else { tolerance };
+            let each = if through && wants(Light::All) { 0.5 * tolerance } else { tolerance };
             let mut part = |wanted: bool, transmitted: bool| -> Result<(f64, f64), TexelError> {
                 if !wanted {
                     return Ok((0.0, 0.0));
@@ -118,13 +107,13 @@ impl Sides {
                 all.evaluations = all.evaluations.saturating_add(e.evaluations);
                 Ok((e.value[0], e.error[0]))
             };
-            let r = part(wants(Part::All) || wants(Part::Reflected), false)?;
-            let t = part(through && (wants(Part::All) || wants(Part::Transmitted)), true)?;
-            for (c, wanted) in self.wanted.iter().enumerate().filter(|(_, w)| w.inside == inside) {
+            let r = part(wants(Light::All) || wants(Light::Reflected), false)?;
+            let t = part(through && (wants(Light::All) || wants(Light::Transmitted)), true)?;
+            for (c, wanted) in self.wanted.iter().enumerate().filter(|(_, w)| w.side == side) {
                 (all.value[c], all.error[c]) = match wanted.part {
-                    Part::All => (r.0 + t.0, r.1 + t.1),
-                    Part::Reflected => r,
-                    Part::Transmitted => t,
+                    Light::All => (r.0 + t.0, r.1 + t.1),
+                    Light::Reflected => r,
+                    Light::Transmitted => t,
                 };
             }
         }

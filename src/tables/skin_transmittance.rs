@@ -4,45 +4,65 @@
 //! `sqrt(r^2 + d^2)`: `T(d) = 2 pi int R(sqrt(r^2 + d^2)) r dr`, which is the part of the profile beyond radius d.
 
 use super::profile::{self, Profile};
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::role::Band;
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use std::f64::consts::SQRT_2;
 
-const CHANNELS: &[ChannelInfo] = &[
-    ChannelInfo { id: "transmitted.r", meaning: "T(d), red", range: [0.0, 1.0] },
-    ChannelInfo { id: "transmitted.g", meaning: "T(d), green", range: [0.0, 1.0] },
-    ChannelInfo { id: "transmitted.b", meaning: "T(d), blue", range: [0.0, 1.0] },
-];
+/// T at a factor times the thickness.
+const fn channels(factor: f64) -> [ChannelInfo; 3] {
+    [
+        channel("transmitted.r", "T(d), red", Role::ProfileBeyond(factor, Band::Red)),
+        channel("transmitted.g", "T(d), green", Role::ProfileBeyond(factor, Band::Green)),
+        channel("transmitted.b", "T(d), blue", Role::ProfileBeyond(factor, Band::Blue)),
+    ]
+}
+
+const fn channel(id: &'static str, meaning: &'static str, role: Role) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [0.0, 1.0], role }
+}
+
+const PLAIN: [ChannelInfo; 3] = channels(1.0);
+const STRETCHED: [ChannelInfo; 3] = channels(SQRT_2);
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
     id: "skin-transmittance",
     title: "Transmittance of thin parts by a diffusion profile",
     formula: "T(d) = 2 pi int R(sqrt(r^2 + d^2)) r dr; of Gaussians sum w_i exp(-d^2 / (2 v_i))",
-    sources: &[
-        (cite::DEON_LUEBKE_2007, "section 14.5.6"),
-        (cite::JIMENEZ_2010, "the transmittance profile (layout jimenez)"),
-    ],
+    sources: &SOURCES,
     coordinates: &["thickness"],
     layouts: &[
-        Layout { id: "gpu-gems", doc: "sum w_i exp(-d^2 / (2 v_i))", channels: CHANNELS },
+        Layout { id: "gpu-gems", doc: "sum w_i exp(-d^2 / (2 v_i))", channels: &PLAIN },
         Layout {
             id: "jimenez",
             doc: "sum w_i exp(-d^2 / v_i): T at the thickness sqrt(2) d",
-            channels: CHANNELS,
+            channels: &STRETCHED,
         },
     ],
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: profile::PARAMS,
-    laws: &["finite", "range", "monotone"],
+    laws: &["finite", "range", "monotone", "honest"],
     axes: default_axes,
     notes: "The two layouts differ by a factor 2 in the exponent and are not interchangeable. Other profiles than Gaussians follow the same \
         reasoning: the part beyond d.",
     bind,
 };
+
+fn is_stretched(role: Role) -> bool {
+    matches!(role, Role::ProfileBeyond(factor, _) if factor > 1.0)
+}
+
+/// Own sources, and those of profiles.
+static SOURCES: [Source; 2 + profile::SOURCES.len()] = profile::with_sources([
+    Source::new(cite::DEON_LUEBKE_2007, "section 14.5.6"),
+    Source::new(cite::JIMENEZ_2010, "the transmittance profile (layout jimenez)").of(is_stretched),
+]);
 
 fn default_axes() -> Vec<Axis> {
     let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([0.0, 8.0]).warped(Warp::Power(0.5));
@@ -56,7 +76,11 @@ struct Table {
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
-    let factor = if spec.layout.id == "jimenez" { SQRT_2 } else { 1.0 };
+    let factors = spec.each(|role| match role {
+        Role::ProfileBeyond(factor, _) => Some(factor),
+        _ => None,
+    })?;
+    let factor = factors.first().copied().unwrap_or(1.0);
     Ok(Box::new(Table { thickness: spec.coordinate("thickness")?, profile: Profile::new(spec)?, factor }))
 }
 

@@ -95,6 +95,14 @@ pub enum BindError {
         /// Table kind.
         kind: &'static str,
     },
+    /// A channel that the kind does not compute: a fault of the registry.
+    #[error("table {kind}: channel `{channel}` is of another kind")]
+    Foreign {
+        /// Table kind.
+        kind: &'static str,
+        /// The channel.
+        channel: &'static str,
+    },
     /// A model given to a kind that has none, or of the wrong sort.
     #[error("table {kind}: model `{model}` {why}")]
     Model {
@@ -238,6 +246,23 @@ impl Spec {
             needed: base_id,
             got: got(),
         })
+    }
+
+    /// Roles of the channels, in file order.
+    #[must_use]
+    pub fn roles(&self) -> Vec<super::Role> {
+        self.layout.channels.iter().map(|c| c.role).collect()
+    }
+
+    /// What a baker makes of the role of each channel, in file order.
+    ///
+    /// # Errors
+    /// [`BindError::Foreign`] for a channel of which it makes nothing: a fault of the registry.
+    pub fn each<T>(&self, make: impl Fn(super::Role) -> Option<T>) -> Result<Vec<T>, BindError> {
+        let one = |c: &super::ChannelInfo| {
+            make(c.role).ok_or(BindError::Foreign { kind: self.kind.id, channel: c.id })
+        };
+        self.layout.channels.iter().map(one).collect()
     }
 
     /// Channels of the layout.

@@ -1,5 +1,6 @@
 //! From a point of the grid to a model: which axis is the view cosine, which ones are parameters.
 
+use super::role::Side;
 use super::{BindError, Spec, TexelError};
 use crate::integrate::View;
 use crate::models::{Brdf, ModelInfo, Params};
@@ -101,9 +102,9 @@ impl Sweep {
     ///
     /// # Errors
     /// [`TexelError::Param`] where the model refuses the parameters.
-    pub fn model_from(&self, at: &[f64], inside: bool) -> Result<Box<dyn Brdf>, TexelError> {
+    pub fn model_from(&self, at: &[f64], side: Side) -> Result<Box<dyn Brdf>, TexelError> {
         let mut params = self.params(at);
-        if inside {
+        if side == Side::Inside {
             params.set("eta", 1.0 / params.number("eta"));
         }
         Ok((self.info.build)(&params)?)

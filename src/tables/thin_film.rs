@@ -1,15 +1,23 @@
 //! Iridescence: the colour of a surface under a thin film, over angle and thickness of the film.
 
+use super::role::Band;
 use super::spectrum::{self, Spectrum};
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::{Param, Preset};
 use crate::terms::thin_film::{self, Film};
 
-const fn colour(id: &'static str, meaning: &'static str) -> ChannelInfo {
-    ChannelInfo { id, meaning, range: [-0.5, 1.5] }
+const fn colour(id: &'static str, meaning: &'static str, role: Role) -> ChannelInfo {
+    ChannelInfo { id, meaning, range: [-0.5, 1.5], role }
+}
+
+/// Integrated over the spectrum.
+fn is_daylight(role: Role) -> bool {
+    matches!(role, Role::FilmColour(_))
 }
 
 /// Registry entry.
@@ -18,10 +26,12 @@ pub static INFO: TableInfo = TableInfo {
     title: "Thin-film iridescence",
     formula: "int R(lambda) D65 (x, y, z) dlambda to linear sRGB, R = |r12 + r23 e^(i delta)|^2 / |1 + r12 r23 e^(i delta)|^2, delta = 4 pi n2 d cos theta_2 / lambda",
     sources: &[
-        (cite::BELCOUR_BARLA_2017, "section 3 (Airy), Eq. 6 to 10 (series; numbers recalled)"),
-        (cite::BORN_WOLF_1999, "section 7.6.1"),
-        (cite::WYMAN_2013, "Eq. 4"),
-        (cite::CIE_11664_2, "Table B.1, D65"),
+        Source::new(cite::BELCOUR_BARLA_2017, "section 3 (Airy)").of(is_daylight),
+        Source::new(cite::BELCOUR_BARLA_2017, "Eq. 6 to 10 (series; numbers recalled)")
+            .of(|role| matches!(role, Role::FilmSeries(_))),
+        Source::new(cite::BORN_WOLF_1999, "section 7.6.1"),
+        Source::new(cite::WYMAN_2013, "Eq. 4").of(is_daylight),
+        Source::new(cite::CIE_11664_2, "Table B.1, D65").of(is_daylight),
     ],
     coordinates: &["mu", "film"],
     layouts: &[
@@ -29,18 +39,18 @@ pub static INFO: TableInfo = TableInfo {
             id: "srgb",
             doc: "linear sRGB of reflected daylight (D65), a perfect mirror being 1; integrated over the spectrum",
             channels: &[
-                colour("film.r", "red of int R D65 (x, y, z) dlambda"),
-                colour("film.g", "green of it"),
-                colour("film.b", "blue of it"),
+                colour("film.r", "red of int R D65 (x, y, z) dlambda", Role::FilmColour(Band::Red)),
+                colour("film.g", "green of it", Role::FilmColour(Band::Green)),
+                colour("film.b", "blue of it", Role::FilmColour(Band::Blue)),
             ],
         },
         Layout {
             id: "series",
             doc: "linear RGB of equal-energy white by the published series of a few orders, as renderers evaluate it",
             channels: &[
-                colour("film.r", "red of the series"),
-                colour("film.g", "green of the series"),
-                colour("film.b", "blue of the series"),
+                colour("film.r", "red of the series", Role::FilmSeries(Band::Red)),
+                colour("film.g", "green of the series", Role::FilmSeries(Band::Green)),
+                colour("film.b", "blue of the series", Role::FilmSeries(Band::Blue)),
             ],
         },
     ],
@@ -52,7 +62,7 @@ pub static INFO: TableInfo = TableInfo {
         Param::number("k3", "k_3", "extinction coefficient below the film", [0.0, 100.0], Preset::Value(0.0)),
         Param::number("orders", "m", "of layout series: orders summed", [1.0, 100.0], Preset::Value(2.0)),
     ],
-    laws: &["range"],
+    laws: &["range", "honest"],
     axes: default_axes,
     notes: "Vacuum above, thickness in nm. Colours may leave [0, 1] a little: renderers clamp. Defaults: water on glass; soap n2 1.33 n3 1; \
         oil on water n2 1.5 n3 1.33; anodised titanium n2 2.5 n3 2.5 k3 3.4. Fringes of films above 2 um are finer than most grids.",
@@ -81,11 +91,12 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         let why = "n3 and k3 are both 0: nothing can be".to_owned();
         return Err(crate::models::ParamError::Together { model: spec.kind.id, why }.into());
     }
+    let series = spec.roles().iter().any(|role| matches!(role, Role::FilmSeries(_)));
     Ok(Box::new(Table {
         mu: spec.coordinate("mu")?,
         film: spec.coordinate("film")?,
         substrate: Film { n2: number("n2"), n3: number("n3"), k3: number("k3"), d_nm: 0.0 },
-        orders: (spec.layout.id == "series").then(|| number("orders").round() as u32),
+        orders: series.then(|| number("orders").round() as u32),
         spectrum: spectrum::daylight(),
     }))
 }

@@ -1,7 +1,9 @@
 //! Visibility V = G2 / (4 mu_o mu_i) of a rough surface over both cosines, and G2 itself.
 
-use super::masking::{DISTRIBUTION, direction, schlick};
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::masking::{DISTRIBUTION, SCHLICK, direction, schlick};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+};
 use crate::cite;
 use crate::grid::Axis;
 use crate::integrate::{Estimate, MAX_CHANNELS};
@@ -16,8 +18,9 @@ pub static INFO: TableInfo = TableInfo {
     title: "Visibility V and masking-shadowing G2",
     formula: "V = G2 / (4 mu_o mu_i); correlated: G2 = 1 / (1 + Lambda_o + Lambda_i), separable: G2 = G1(mu_o) G1(mu_i)",
     sources: &[
-        (cite::HEITZ_2014, "Eq. 98 (separable), Eq. 99 (correlated)"),
-        (cite::SCHLICK_1994, "Eq. 19 (number recalled)"),
+        Source::new(cite::HEITZ_2014, "Eq. 98 (separable), Eq. 99 (correlated)")
+            .when("distribution", &["ggx", "beckmann"]),
+        Source::new(cite::SCHLICK_1994, "Eq. 19 (number recalled)").when("distribution", SCHLICK),
     ],
     coordinates: &["mu", "mu_i"],
     layouts: &[
@@ -28,12 +31,18 @@ pub static INFO: TableInfo = TableInfo {
                 id: "visibility",
                 meaning: "G2 / (4 mu_o mu_i)",
                 range: [0.0, 3.4e38],
+                role: Role::Visibility,
             }],
         },
         Layout {
             id: "g2",
             doc: "part of the facets facing both directions that is hidden from neither",
-            channels: &[ChannelInfo { id: "g2", meaning: "G2(mu_o, mu_i)", range: [0.0, 1.0] }],
+            channels: &[ChannelInfo {
+                id: "g2",
+                meaning: "G2(mu_o, mu_i)",
+                range: [0.0, 1.0],
+                role: Role::MaskingShadowing,
+            }],
         },
     ],
     mix: Mix::Layouts,
@@ -43,7 +52,7 @@ pub static INFO: TableInfo = TableInfo {
         Param::choice("masking", "how the two directions go together", &["correlated", "separable"]),
         Param::number("alpha", "alpha", "width of the distribution", [0.0, 2.0], Preset::Value(0.25)),
     ],
-    laws: &["finite", "range"],
+    laws: &["finite", "range", "honest"],
     axes: default_axes,
     notes: "V is symmetric. Where both cosines are 0 the correlated form counts as 0: there is no reflection. Schlick's form is separable. \
         Axes: mu, mu_i and alpha or roughness.",
@@ -74,7 +83,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         alpha: spec.params.number("alpha"),
         distribution: spec.params.choice("distribution"),
         correlated: spec.params.choice("masking") == "correlated",
-        visibility: spec.layout.id == "visibility",
+        visibility: spec.roles().contains(&Role::Visibility),
     }))
 }
 

@@ -1,21 +1,28 @@
 //! An independent integrator: the model's own sampler at scrambled Sobol points, with a standard error from
 //! independent scramblings. It shares no node, no chart and no reduction with the baker.
 
-use super::{Case, Law, Outcome, seeds};
+use super::linear::Linear;
+use super::lobes::Lobes;
+use super::{Case, Law, Outcome, Watch, linear, seeds, walk};
 use crate::integrate::View;
 use crate::integrate::sobol::{ReplicateMean, replicate_mean};
 use crate::models::Brdf;
 use crate::tables::integral::Functional;
-use crate::tables::{place, sweep::Sweep};
+use crate::tables::role::Light;
+use crate::tables::{Role, place};
 use glam::{DVec2, DVec3};
 
 /// The law.
 pub static LAW: Law = Law {
     id: "cross-check",
-    statement: "the baked value agrees with sampling at scrambled Sobol points",
+    statement: "the baked value agrees with sampling at scrambled Sobol points, or with random walks",
     margin: "6 standard errors, plus 2 / N for tails that N draws miss, plus the error estimate, minus the difference; smallest of 12 texels",
     code: 2004,
-    check,
+    formal: false,
+    concerns: |spec| {
+        spec.roles().into_iter().any(|role| linear::is_linear(role) || matches!(role, Role::FibreAlbedo(_)))
+    },
+    check: |case| check(case, 0x51ed),
 };
 
 /// Scramblings, and points in each.
@@ -24,10 +31,13 @@ const POINTS: u32 = 512;
 
 /// What N draws may have missed: tails that are hit less than once in N, with weights of about 1, do not show in the
 /// standard error (at alpha = 0.002 the rays lost at the horizon are three in a million).
-pub(super) const UNSEEN: f64 = 2.0 / (REPLICATES * POINTS) as f64;
+const UNSEEN: f64 = 2.0 / (REPLICATES * POINTS) as f64;
+
+/// Walks through a layer.
+const WALKS: u32 = 8192;
 
 /// Texels that are checked.
-pub(super) const TEXELS: usize = 12;
+const TEXELS: usize = 12;
 
 /// Estimates `int f g mu_i dwi` for several functionals g by the model's sampler, with standard errors.
 #[must_use]
@@ -57,90 +67,78 @@ fn weight(model: &dyn Brdf, wo: DVec3, u: DVec2) -> (f64, f64) {
     }
 }
 
-/// Estimates the light that leaves a surface: on the side of the view, through it, or both.
-pub(super) fn leaving(
-    model: &dyn Brdf,
-    view: View,
-    reflected: bool,
-    through: bool,
-    seed: u64,
-) -> ReplicateMean {
+/// Estimates the integrals of a channel: of the light on the side of the view, through the surface, or both.
+fn sampled(model: &dyn Brdf, view: View, channel: &Linear, seed: u64) -> ReplicateMean {
     let wo = view.direction();
-    let btdf = model.transmission().filter(|_| through);
+    let btdf = model.transmission().filter(|_| channel.light != Light::Reflected);
     let [mean] = replicate_mean(seed, REPLICATES, POINTS, |u| {
-        let r = if reflected { weight(model, wo, u).0 } else { 0.0 };
+        let r = if channel.light == Light::Transmitted {
+            0.0
+        } else {
+            let (weight, cos_d) = weight(model, wo, u);
+            channel.terms.iter().map(|(g, factor)| factor * weight * g.at(cos_d)).sum()
+        };
         let t = btdf.and_then(|t| {
             let s = t.sample(wo, u).filter(|s| s.pdf > 0.0)?;
             // the flux along wo: light from wo, seen from the drawn side
             Some(t.eval(s.wi, wo) * s.wi.z.abs() / s.pdf)
         });
-        [r + t.unwrap_or(0.0)]
+        let factor: f64 = channel.terms.iter().map(|(_, factor)| factor).sum();
+        [r + factor * t.unwrap_or(0.0)]
     });
-    mean
+    ReplicateMean { mean: channel.constant + mean.mean, ..mean }
 }
 
-/// Reflected, transmitted, from inside: which light a channel counts, if it is an albedo.
-fn parts(channel: &str) -> Option<(bool, bool, bool)> {
-    let (name, inside) = channel.strip_suffix(".inside").map_or((channel, false), |name| (name, true));
-    match name {
-        "e" => Some((true, true, inside)),
-        "r" => Some((true, false, inside)),
-        "t" => Some((false, true, inside)),
-        _ => None,
-    }
-}
-
-/// Which functional a channel holds, if it is one.
-fn functional(channel: &str) -> Option<Functional> {
-    match channel {
-        "dfg.scale" => Some(Functional::SchlickComplement),
-        "dfg.bias" | "dfg.fc" | "ltc.fresnel" => Some(Functional::Schlick),
-        "dfg.f82" => Some(Functional::F82),
-        "dfg.total" | "dfg.loss" | "ltc.magnitude" => Some(Functional::One),
-        _ => None,
-    }
-}
-
-fn check(case: &Case<'_>) -> Outcome {
-    let splits = case.bound.spec.model.as_ref().is_some_and(|(info, _)| info.splits);
-    let white = splits && ["dfg", "ltc-magnitude"].contains(&case.bound.spec.kind.id);
-    let Ok(sweep) = Sweep::new(&case.bound.spec, white) else { return Outcome::vacuous("no model") };
-    let mut outcome = Outcome::start();
+/// Compares channels that are linear in integrals of their lobes with sampling.
+pub(super) fn check(case: &Case<'_>, seed: u64) -> Outcome {
+    let lobes = Lobes::new(case.spec());
+    let mut watch = Watch::default();
     for (i, texel) in
         seeds::texels(case.table, TEXELS, 0xc705).into_iter().enumerate().take_while(|_| case.goes_on())
     {
         let point = case.table.grid.texel(texel);
-        let view = sweep.view(point.values());
-        let Ok(model) = sweep.model(point.values()) else { continue };
-        // a mirror has no density to sample; at the horizon the sampler has nothing to see
-        if model.mirror(view.mu).is_some() || view.mu < 1e-6 {
-            continue;
-        }
-        let seed = 0x51ed + i as u64;
-        for (c, channel) in case.table.channels.iter().enumerate() {
-            let s = if let Some(g) = functional(&channel.id) {
-                let [s] = estimate(&*model, view, [g], seed, REPLICATES, POINTS);
-                s
-            } else if let Some((reflected, through, inside)) = parts(&channel.id)
-                && let Ok(model) = sweep.model_from(point.values(), inside)
-            {
-                leaving(&*model, view, reflected, through, seed)
-            } else {
+        walks(case, texel, seed + i as u64, &mut watch);
+        for (c, role) in case.spec().roles().into_iter().enumerate() {
+            let Some(lobe) = role.lobe() else { continue };
+            let view = lobes.view(lobe, point.values());
+            let Some(channel) = Linear::of(role, case.spec(), view, point.values()) else { continue };
+            let Some(model) = lobes.build(lobe, point.values(), channel.side) else { continue };
+            // a mirror has no density to sample; at the horizon the sampler has nothing to see
+            if model.mirror(view.mu).is_some() || view.mu < 1e-6 {
+                watch.miss(|| "a mirror, or a view in the horizon, has no density to sample".to_owned());
                 continue;
-            };
-            let k = texel * case.table.channels.len() + c;
-            let (stored, e) = (case.table.values[k], case.table.errors[k]);
-            let v = if channel.id == "dfg.loss" { 1.0 - stored } else { stored };
-            outcome.tighten(6.0 * s.standard_error + e + UNSEEN - (v - s.mean).abs(), || {
-                format!(
-                    "{} = {v:.6} against {:.6} +- {:.1e}, {}",
-                    channel.id,
-                    s.mean,
-                    s.standard_error,
-                    place(&case.table.grid, texel)
-                )
+            }
+            let s = sampled(&*model, view, &channel, seed + i as u64);
+            let (v, e) = case.at(texel, c);
+            let unseen = UNSEEN * channel.terms.iter().map(|(_, factor)| factor.abs()).fold(0.0, f64::max);
+            watch.see(6.0 * s.standard_error + e + unseen - (v - s.mean).abs(), || {
+                let id = &case.table.channels[c].id;
+                let place = place(&case.table.grid, texel);
+                format!("{id} = {v:.6} against {:.6} +- {:.1e}, {place}", s.mean, s.standard_error)
             });
         }
     }
-    if outcome.at.is_empty() { Outcome::vacuous("no texel with a density") } else { outcome }
+    watch.outcome("no texel with a density")
+}
+
+/// Compares the albedo of a layer of fibres with random walks.
+fn walks(case: &Case<'_>, texel: usize, seed: u64, watch: &mut Watch) {
+    let spec = case.spec();
+    let point = case.table.grid.texel(texel);
+    for (c, channel) in spec.layout.channels.iter().enumerate() {
+        let Role::FibreAlbedo(scale) = channel.role else { continue };
+        let r = spec.axis("r").map_or_else(|| spec.params.number("r"), |i| point.values()[i]);
+        let Some(mu) = spec.axis("mu").map(|i| point.values()[i]) else { continue };
+        let found = walk::reflected(r * r, mu, WALKS, seed);
+        // a part of n walks that is near 0 or 1 still has the spread of one walk
+        let n = f64::from(WALKS);
+        let spread = ((found * (1.0 - found)).max(1.0 / n) / n).sqrt();
+        let code = |r: f64| scale.map_or(r, |scale| (r / scale).min(1.0));
+        let (v, e) = case.at(texel, c);
+        let apart = (v - code(found)).abs();
+        watch.see(6.0 * spread / scale.unwrap_or(1.0) + e - apart, || {
+            let place = place(&case.table.grid, texel);
+            format!("{} = {v:.6} against {:.6} +- {spread:.1e}, {place}", channel.id, code(found))
+        });
+    }
 }

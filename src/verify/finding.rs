@@ -1,8 +1,13 @@
 //! Numbered findings: 1xxx input and output, 2xxx energy, 3xxx reciprocity, 4xxx stability, 5xxx encoding.
 
-use super::{Law, Outcome};
+use super::{Law, Seen};
+use crate::grid::Table;
+use crate::grid::table::place;
 use crate::tables::Spec;
 use serde::Serialize;
+
+/// Number of the finding that texels miss their tolerance.
+pub const MISSED: u16 = 4010;
 
 /// Something that a check found, with its number and place.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -13,11 +18,13 @@ pub struct Finding {
     pub severity: Severity,
     /// Law or check that found it.
     pub law: String,
+    /// What came of it.
+    pub result: Verdict,
     /// Table kind and model.
     pub subject: String,
     /// What was found.
     pub message: String,
-    /// Where: coordinates and parameters.
+    /// Where: coordinates and parameters; empty where it is no place.
     pub at: String,
 }
 
@@ -31,17 +38,73 @@ pub enum Severity {
     Warning,
 }
 
+/// What came of a check.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// A law is broken.
+    Broken,
+    /// A law is broken, and let through for a reason.
+    Waived,
+    /// A law could not be checked.
+    #[serde(rename = "not checked")]
+    NotChecked,
+    /// Texels miss their tolerance.
+    Missed,
+}
+
+impl Verdict {
+    /// Is it what `--strict` refuses? A waiver has its reason in the recipe.
+    #[must_use]
+    pub fn is_doubt(self) -> bool {
+        matches!(self, Verdict::NotChecked | Verdict::Missed)
+    }
+}
+
 impl Finding {
     /// A broken law.
     #[must_use]
-    pub fn broken(law: &Law, outcome: &Outcome, spec: &Spec) -> Finding {
+    pub fn broken(law: &Law, seen: &Seen, spec: &Spec) -> Finding {
         Finding {
             code: law.code,
             severity: Severity::Error,
             law: law.id.to_owned(),
+            result: Verdict::Broken,
             subject: subject(spec),
-            message: format!("{}: margin {:.3e} ({})", law.statement, outcome.margin, law.margin),
-            at: outcome.at.clone(),
+            message: format!("{}: margin {:.3e} ({})", law.statement, seen.margin, law.margin),
+            at: seen.at.clone(),
+        }
+    }
+
+    /// A law that could not be checked.
+    #[must_use]
+    pub fn unchecked(law: &Law, why: &str, spec: &Spec) -> Finding {
+        Finding {
+            code: law.code,
+            severity: Severity::Warning,
+            law: law.id.to_owned(),
+            result: Verdict::NotChecked,
+            subject: subject(spec),
+            message: format!("not checked: {why}"),
+            at: String::new(),
+        }
+    }
+
+    /// Texels that miss their tolerance, as the recipe allows.
+    #[must_use]
+    pub fn missed(count: usize, tolerance: f64, table: &Table, spec: &Spec) -> Finding {
+        let worst = table.largest_error();
+        let (n, estimate) = (table.grid.len(), worst.value);
+        Finding {
+            code: MISSED,
+            severity: Severity::Warning,
+            law: "tolerance".to_owned(),
+            result: Verdict::Missed,
+            subject: subject(spec),
+            message: format!(
+                "{count} of {n} texels miss the tolerance {tolerance:e}; the worst has an estimated error of {estimate:e}"
+            ),
+            at: place(&worst.at),
         }
     }
 
@@ -49,6 +112,7 @@ impl Finding {
     #[must_use]
     pub fn waived(mut self, reason: &str) -> Finding {
         self.severity = Severity::Warning;
+        self.result = Verdict::Waived;
         self.message = format!("{}; waived: {reason}", self.message);
         self
     }
@@ -68,6 +132,7 @@ pub fn subject(spec: &Spec) -> String {
 
 impl std::fmt::Display for Finding {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "BB{:04} {}: {} [{}] at {}", self.code, self.law, self.subject, self.message, self.at)
+        write!(f, "BB{:04} {}: {} [{}]", self.code, self.law, self.subject, self.message)?;
+        if self.at.is_empty() { Ok(()) } else { write!(f, " at {}", self.at) }
     }
 }

@@ -1,10 +1,12 @@
 //! A stored matrix is a lobe, and lies as far from the model as the fit says: seen by drawing from the model.
 
-use super::{Case, Law, Outcome, seeds};
+use super::lobes::Lobes;
+use super::{Case, Law, Outcome, Watch, seeds};
 use crate::integrate::View;
 use crate::integrate::sobol::replicate_mean;
 use crate::models::Brdf;
-use crate::tables::{ltc_fit, ltc_matrix, place, sweep::Sweep};
+use crate::tables::role::{Lobe, Side};
+use crate::tables::{Role, Spec, ltc_fit, ltc_matrix, place};
 use crate::terms::ltc::Inverse;
 
 /// The law.
@@ -14,6 +16,8 @@ pub static LAW: Law = Law {
     margin: "6 standard errors, plus 1e-3, minus the difference of the total variation by the fit's nodes and by 8192 draws; \
         smallest of 12 texels; -inf for a matrix that is no lobe",
     code: 4004,
+    formal: false,
+    concerns: |spec| lobe(spec).is_some(),
     check,
 };
 
@@ -28,30 +32,39 @@ const POINTS: u32 = 512;
 const LEVEL: f64 = 20.0;
 const SLACK: f64 = 1e-3;
 
+/// The lobe that the matrices of a table are fitted to, if its channels make a matrix.
+fn lobe(spec: &Spec) -> Option<Lobe> {
+    let roles = spec.roles();
+    ltc_matrix::stored(&roles, &vec![1.0; roles.len()])?;
+    roles.into_iter().find_map(|role| if let Role::Matrix(lobe, _) = role { Some(lobe) } else { None })
+}
+
 fn check(case: &Case<'_>) -> Outcome {
-    let splits = case.bound.spec.model.as_ref().is_some_and(|(info, _)| info.splits);
-    let Ok(sweep) = Sweep::new(&case.bound.spec, splits) else { return Outcome::vacuous("no model") };
-    let mut outcome = Outcome::start();
+    let (roles, lobes) = (case.spec().roles(), Lobes::new(case.spec()));
+    let Some(lobe) = lobe(case.spec()) else {
+        return Outcome::NotChecked("the channels make no matrix".to_owned());
+    };
+    let mut watch = Watch::default();
     for texel in (0..case.table.grid.len()).take_while(|_| case.goes_on()) {
-        let Some(m) = ltc_matrix::stored(case.table, texel) else {
-            return Outcome::vacuous("no matrix in these channels");
-        };
+        let Some(m) = ltc_matrix::stored(&roles, case.table.at(texel)) else { continue };
         // NaN is no lobe
         if !(m.minor() > 0.0 && m.m22 > 0.0 && m.apply(glam::DVec3::ONE).is_finite()) {
-            outcome.tighten(f64::NEG_INFINITY, || format!("{m:?}, {}", place(&case.table.grid, texel)));
+            watch.see(f64::NEG_INFINITY, || format!("{m:?}, {}", place(&case.table.grid, texel)));
         }
     }
     for (i, texel) in
         seeds::texels(case.table, TEXELS, 0x17c).into_iter().enumerate().take_while(|_| case.goes_on())
     {
         let point = case.table.grid.texel(texel);
-        let view = sweep.view(point.values());
-        let (Ok(model), Some(m)) = (sweep.model(point.values()), ltc_matrix::stored(case.table, texel))
-        else {
+        let view = lobes.view(lobe, point.values());
+        let (Some(model), Some(m)) = (
+            lobes.build(lobe, point.values(), Side::Above),
+            ltc_matrix::stored(&roles, case.table.at(texel)),
+        ) else {
             continue;
         };
-        // in the horizon the sampler has nothing to see
         if view.mu < 1e-6 {
+            watch.miss(|| "in the horizon the sampler has nothing to see".to_owned());
             continue;
         }
         let Ok(fit) = ltc_fit::judge(&*model, view, &m, LEVEL) else { continue };
@@ -60,7 +73,7 @@ fn check(case: &Case<'_>) -> Outcome {
         }
         let seen = variation(&*model, view, &m, fit.albedo, 0x10be + i as u64);
         let margin = 6.0 * seen.standard_error + SLACK - (fit.variation - seen.mean).abs();
-        outcome.tighten(margin, || {
+        watch.see(margin, || {
             format!(
                 "total variation {:.5} against {:.5} +- {:.1e}, {}",
                 fit.variation,
@@ -70,7 +83,7 @@ fn check(case: &Case<'_>) -> Outcome {
             )
         });
     }
-    if outcome.at.is_empty() { Outcome::vacuous("no texel with a density") } else { outcome }
+    watch.outcome("no texel with a density")
 }
 
 /// `int max(0, f mu_i / E - D)` by the model's sampler.

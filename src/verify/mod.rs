@@ -1,7 +1,9 @@
 //! Laws that a bake must obey, one file a law, checked before anything is written.
 //!
-//! A law never calls the baker's integrand where another rule exists: it goes to the model, to a closed form, or to
-//! visible-normal sampling with scrambled Sobol points ([`cross_check`]).
+//! A law finds its subject by the [`Role`](crate::tables::Role)s of the channels, never by their names, and says what came of
+//! looking: it held, it is broken, or it was not checked and why. It never calls the baker's integrand where another rule
+//! exists: it goes to the model, to a closed form, to visible-normal sampling with scrambled Sobol points ([`cross_check`]), or to
+//! the rules of [`honest`].
 
 pub mod baseline;
 pub mod complement;
@@ -9,9 +11,13 @@ pub mod cross_check;
 pub mod energy;
 pub mod finding;
 pub mod finite;
+pub mod honest;
+mod linear;
 pub mod lobe;
+mod lobes;
 pub mod monotone;
 pub mod normalised;
+mod outcome;
 pub mod range;
 pub mod reciprocity;
 pub mod reconstruction;
@@ -21,12 +27,14 @@ pub mod split;
 pub mod survey;
 pub mod tolerance;
 pub mod total;
+mod walk;
 
 use crate::cancel::{Cancel, Cancelled};
 use crate::grid::Table;
 use crate::grid::provenance::{LawRecord, Waiver};
-use crate::tables::Bound;
+use crate::tables::{Bound, Spec, driver};
 pub use finding::Finding;
+pub use outcome::{Outcome, Seen, Watch};
 
 /// Every law, in the order in which they are checked.
 pub static LAWS: &[&Law] = &[
@@ -42,9 +50,10 @@ pub static LAWS: &[&Law] = &[
     &cross_check::LAW,
     &complement::LAW,
     &reciprocity::LAW,
+    &honest::LAW,
 ];
 
-/// A law: what it says, and how it is checked on a baked table.
+/// A law: what it says, of what, and how it is checked on a baked table.
 #[derive(Debug)]
 pub struct Law {
     /// Id, as in table entries and waivers.
@@ -55,6 +64,10 @@ pub struct Law {
     pub margin: &'static str,
     /// Number of the finding that a breach gives.
     pub code: u16,
+    /// True for what any table of numbers obeys: it says nothing of what the numbers mean.
+    pub formal: bool,
+    /// Has it anything to say of the channels of a table?
+    pub concerns: fn(&Spec) -> bool,
     /// Checks it.
     pub check: fn(&Case<'_>) -> Outcome,
 }
@@ -72,43 +85,24 @@ pub struct Case<'a> {
     pub cancel: &'a Cancel,
 }
 
-impl Case<'_> {
+impl<'a> Case<'a> {
     /// False once the check is to stop; loops of laws look at it.
     #[must_use]
     pub fn goes_on(&self) -> bool {
         !self.cancel.is_set()
     }
-}
 
-/// The outcome of a law: its smallest margin (negative when it is broken) and where.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Outcome {
-    /// Distance to the bound.
-    pub margin: f64,
-    /// Where it is smallest.
-    pub at: String,
-}
-
-impl Outcome {
-    /// A law with nothing to check on this table.
+    /// Value and error estimate of a channel of a texel.
     #[must_use]
-    pub fn vacuous(why: &str) -> Outcome {
-        Outcome { margin: 0.0, at: why.to_owned() }
+    pub fn at(&self, texel: usize, channel: usize) -> (f64, f64) {
+        let i = texel * self.table.channels.len() + channel;
+        (self.table.values[i], self.table.errors[i])
     }
 
-    /// Keeps the smaller margin; NaN counts as broken.
-    pub fn tighten(&mut self, margin: f64, at: impl FnOnce() -> String) {
-        let margin = if margin.is_nan() { f64::NEG_INFINITY } else { margin };
-        if margin < self.margin || self.at.is_empty() {
-            self.margin = margin;
-            self.at = at();
-        }
-    }
-
-    /// The largest margin there is, to be tightened.
+    /// Kind, layout, model, parameters and axes.
     #[must_use]
-    pub fn start() -> Outcome {
-        Outcome { margin: f64::INFINITY, at: String::new() }
+    pub fn spec(&self) -> &'a Spec {
+        &self.bound.spec
     }
 }
 
@@ -118,6 +112,7 @@ pub struct Verified {
     table: Table,
     laws: Vec<LawRecord>,
     waived: Vec<Waiver>,
+    missed: usize,
 }
 
 impl Verified {
@@ -127,7 +122,7 @@ impl Verified {
         &self.table
     }
 
-    /// The laws that were checked, with their margins.
+    /// What came of every law of the table.
     #[must_use]
     pub fn laws(&self) -> &[LawRecord] {
         &self.laws
@@ -138,6 +133,25 @@ impl Verified {
     pub fn waived(&self) -> &[Waiver] {
         &self.waived
     }
+
+    /// Texels whose estimate is above the tolerance.
+    #[must_use]
+    pub fn missed(&self) -> usize {
+        self.missed
+    }
+
+    /// Is every estimate within the tolerance?
+    #[must_use]
+    pub fn tolerance_met(&self) -> bool {
+        self.missed == 0
+    }
+
+    /// No law is broken or waived, the tolerance is met, and a law that says what the numbers mean was held.
+    #[must_use]
+    pub fn verified(&self) -> bool {
+        let told = |l: &LawRecord| l.held() && find(&l.law).is_some_and(|law| !law.formal);
+        self.waived.is_empty() && self.tolerance_met() && self.laws.iter().any(told)
+    }
 }
 
 /// Finds a law by id.
@@ -146,7 +160,13 @@ pub fn find(id: &str) -> Option<&'static Law> {
     LAWS.iter().copied().find(|l| l.id == id)
 }
 
-/// Checks every law of a table kind. Findings of waived laws are returned beside the verified table.
+/// The laws that are checked on a table: those that its kind declares and that have something to say of its channels.
+pub fn declared(spec: &Spec) -> impl Iterator<Item = &'static Law> {
+    LAWS.iter().copied().filter(|l| spec.kind.laws.contains(&l.id) && (l.concerns)(spec))
+}
+
+/// Checks every law of a table. What does not stop a bake is returned beside the verified table: breaches that are waived, laws
+/// that could not be checked, texels that miss the tolerance.
 ///
 /// # Errors
 /// The findings of the broken laws that are not waived.
@@ -174,26 +194,33 @@ pub fn check_until(
     let case = Case { bound, table: &table, tolerance, cancel };
     let mut laws = Vec::new();
     let mut broken = Vec::new();
-    let mut let_through = Vec::new();
+    let mut warnings = Vec::new();
     let mut waived = Vec::new();
-    for law in LAWS.iter().filter(|l| bound.spec.kind.laws.contains(&l.id)) {
+    for law in declared(&bound.spec) {
         let outcome = (law.check)(&case);
         cancel.check()?;
-        let held = outcome.margin >= 0.0;
-        if !held {
-            let finding = Finding::broken(law, &outcome, &bound.spec);
-            match waivers.iter().find(|w| w.law == law.id) {
-                Some(w) => {
-                    waived.push(w.clone());
-                    let_through.push(finding.waived(&w.reason));
+        match &outcome {
+            Outcome::Held(_) => {}
+            Outcome::NotChecked(why) => warnings.push(Finding::unchecked(law, why, &bound.spec)),
+            Outcome::Broken(seen) => {
+                let finding = Finding::broken(law, seen, &bound.spec);
+                match waivers.iter().find(|w| w.law == law.id) {
+                    Some(w) => {
+                        waived.push(w.clone());
+                        warnings.push(finding.waived(&w.reason));
+                    }
+                    None => broken.push(finding),
                 }
-                None => broken.push(finding),
             }
         }
-        laws.push(LawRecord { law: law.id.to_owned(), held, margin: outcome.margin, at: outcome.at });
+        laws.push(outcome.record(law.id));
     }
     if !broken.is_empty() {
         return Ok(Err(broken));
     }
-    Ok(Ok((Verified { table, laws, waived }, let_through)))
+    let missed = driver::missed(&table, tolerance);
+    if missed > 0 {
+        warnings.push(Finding::missed(missed, tolerance, &table, &bound.spec));
+    }
+    Ok(Ok((Verified { table, laws, waived, missed }, warnings)))
 }

@@ -2,13 +2,14 @@
 //!
 //! The sums are taken over fresh values at the nodes of another rule, in another variable than the baker's.
 
-use super::{Case, Law, Outcome, seeds};
+use super::lobes::Lobes;
+use super::{Case, Law, Outcome, Watch, seeds};
 use crate::integrate::{Sums, line};
 use crate::tables::integral::{Functional, integrate};
 use crate::tables::phase_function::Phase;
 use crate::tables::profile::Profile;
-use crate::tables::sweep::Sweep;
-use crate::tables::{diffusion_profile, importance, place};
+use crate::tables::role::{Lobe, Per, Side};
+use crate::tables::{Role, Spec, diffusion_profile, importance, place};
 use std::f64::consts::PI;
 
 /// The law.
@@ -17,6 +18,8 @@ pub static LAW: Law = Law {
     statement: "the integral over the whole domain is what the formula promises (a mean, an albedo, 1)",
     margin: "the errors of both sides minus the difference, over the rows of the table that were checked",
     code: 2006,
+    formal: false,
+    concerns: |spec| subject(spec).is_some(),
     check,
 };
 
@@ -26,27 +29,58 @@ const ROWS: usize = 8;
 /// Relative rounding of a sum.
 const ROUNDING: f64 = 1e-12;
 
+/// What there is to add up.
+enum Subject {
+    Skin,
+    Radial(Per),
+    Kernel,
+    /// A cumulative distribution: its ends.
+    Ends,
+    Weights,
+    Sphere,
+    Albedo(Lobe),
+}
+
+/// What the channels of a table are, if that has a whole.
+fn subject(spec: &Spec) -> Option<Subject> {
+    spec.roles().into_iter().find_map(|role| match role {
+        Role::BlurredLight(_) => Some(Subject::Skin),
+        Role::Profile(per, _) => Some(Subject::Radial(per)),
+        Role::Kernel(_) => Some(Subject::Kernel),
+        Role::ProfileWithin(_) | Role::KernelWithin(_) => Some(Subject::Ends),
+        Role::GaussianWeight(_) => Some(Subject::Weights),
+        Role::Phase { .. } => Some(Subject::Sphere),
+        Role::Direction(lobe, _) | Role::DirectionDensity(lobe) => Some(Subject::Albedo(lobe)),
+        _ => None,
+    })
+}
+
 fn check(case: &Case<'_>) -> Outcome {
-    match case.bound.spec.kind.id {
-        "preintegrated-skin" => skin(case),
-        "diffusion-profile" => radial(case),
-        "diffusion-kernel" => kernel(case),
-        "gaussian-fit" => weights(case),
-        "phase-function" => sphere(case),
-        "importance" => albedo(case),
-        _ => Outcome::vacuous("nothing to add up"),
+    match subject(case.spec()) {
+        Some(Subject::Skin) => skin(case),
+        Some(Subject::Radial(per)) => radial(case, per),
+        Some(Subject::Kernel) => kernel(case),
+        Some(Subject::Ends) => ends(case),
+        Some(Subject::Weights) => weights(case),
+        Some(Subject::Sphere) => sphere(case),
+        Some(Subject::Albedo(lobe)) => albedo(case, lobe),
+        None => nothing(),
     }
+}
+
+fn nothing() -> Outcome {
+    Outcome::NotChecked("nothing to add up".to_owned())
 }
 
 /// Over ring: `int_0^pi D dtheta = 1`; over the sphere: `int_0^pi D sin dtheta = 1/2`; as clamp(N.L).
 fn skin(case: &Case<'_>) -> Outcome {
     let spec = &case.bound.spec;
     let (Some(ndotl), Some(curvature)) = (spec.axis("ndotl"), spec.axis("curvature")) else {
-        return Outcome::vacuous("no angle or curvature");
+        return Outcome::NotChecked("no axis of angle or curvature".to_owned());
     };
     let sphere = spec.params.choice("over") == "sphere";
     let expected = if sphere { 0.5 } else { 1.0 };
-    let mut outcome = Outcome::start();
+    let mut watch = Watch::default();
     for value in rows(case, curvature) {
         let mut at = vec![0.0; spec.grid.axes().len()];
         at[curvature] = value;
@@ -57,41 +91,34 @@ fn skin(case: &Case<'_>) -> Outcome {
             at[ndotl] = libm::cos(theta);
             (at.clone(), measure(theta))
         });
-        tighten(&mut outcome, &sum, 0..3, expected, || format!("curvature = {value:.6}"));
+        tighten(&mut watch, &sum, 0..3, expected, || format!("curvature = {value:.6}"));
     }
-    outcome
+    watch.outcome("no row")
 }
 
-/// `int ring dr`, or `2 pi int area r dr`, is what the table says that it is scaled to; `inside` ends there.
-fn radial(case: &Case<'_>) -> Outcome {
+/// `int ring dr`, or `2 pi int area r dr`, is what the table says that it is scaled to.
+fn radial(case: &Case<'_>, per: Per) -> Outcome {
     let spec = &case.bound.spec;
-    let Ok(profile) = Profile::new(spec) else { return Outcome::vacuous("no profile") };
-    let expected = if spec.layout.id == "inside" {
-        return ends(case, &profile);
-    } else {
-        diffusion_profile::factor(spec, &profile)
-    };
-    let area = spec.layout.id == "area";
+    let Ok(profile) = Profile::new(spec) else { return nothing() };
+    let expected = diffusion_profile::factor(spec, &profile);
+    let area = per == Per::Area;
     let sum = add_up(case, &outwards(&profile), 3, case.tolerance, |r| {
         (vec![r], if area { 2.0 * PI * r } else { 1.0 })
     });
-    let mut outcome = Outcome::start();
+    let mut watch = Watch::default();
     for (c, expected) in expected.iter().enumerate() {
-        tighten(&mut outcome, &sum, c..c + 1, *expected, || "all distances".to_owned());
+        tighten(&mut watch, &sum, c..c + 1, *expected, || "all distances".to_owned());
     }
-    outcome
+    watch.outcome("no row")
 }
 
-/// `2 int L dx = 1`; the cumulative kernel ends at 1.
+/// `2 int L dx = 1`.
 fn kernel(case: &Case<'_>) -> Outcome {
-    let Ok(profile) = Profile::new(&case.bound.spec) else { return Outcome::vacuous("no profile") };
-    if case.bound.spec.layout.id == "cumulative" {
-        return ends(case, &profile);
-    }
+    let Ok(profile) = Profile::new(&case.bound.spec) else { return nothing() };
     let sum = add_up(case, &outwards(&profile), 3, case.tolerance, |x| (vec![x], 2.0));
-    let mut outcome = Outcome::start();
-    tighten(&mut outcome, &sum, 0..3, 1.0, || "all offsets".to_owned());
-    outcome
+    let mut watch = Watch::default();
+    tighten(&mut watch, &sum, 0..3, 1.0, || "all offsets".to_owned());
+    watch.outcome("no row")
 }
 
 /// `2 pi int p sin theta dtheta = 1`, of the density also where the table holds it relative to its peak.
@@ -99,10 +126,11 @@ fn sphere(case: &Case<'_>) -> Outcome {
     let spec = &case.bound.spec;
     let axis = spec.axis("g");
     let values: Vec<Option<f64>> = axis.map_or(vec![None], |i| rows(case, i).into_iter().map(Some).collect());
-    let mut outcome = Outcome::start();
+    let mut watch = Watch::default();
     for g in values {
         let phase = Phase::new(&spec.params, g);
-        let peak = if spec.layout.id == "relative" { phase.largest() } else { 1.0 };
+        let relative = spec.roles().contains(&Role::Phase { relative: true });
+        let peak = if relative { phase.largest() } else { 1.0 };
         let deflection = spec.axis("deflection").unwrap_or(0);
         // peaks are as narrow as 1 - |g|, on either side
         let near = [0.0, 1e-4, 1e-3, 1e-2, 0.1, 0.5];
@@ -116,50 +144,51 @@ fn sphere(case: &Case<'_>) -> Outcome {
             at[deflection] = theta;
             (at, 2.0 * PI * libm::sin(theta) * peak)
         });
-        tighten(&mut outcome, &sum, 0..1, 1.0, || g.map_or("all angles".to_owned(), |g| format!("g = {g}")));
+        tighten(&mut watch, &sum, 0..1, 1.0, || g.map_or("all angles".to_owned(), |g| format!("g = {g}")));
     }
-    outcome
+    watch.outcome("no row")
 }
 
 /// What the marginal density adds up to is the directional albedo, by the model's own chart; at [`ROWS`] texels.
-fn albedo(case: &Case<'_>) -> Outcome {
-    let Ok(sweep) = Sweep::new(&case.bound.spec, false) else { return Outcome::vacuous("no model") };
-    let mut outcome = Outcome::start();
+fn albedo(case: &Case<'_>, lobe: Lobe) -> Outcome {
+    let lobes = Lobes::new(case.spec());
+    let mut watch = Watch::default();
     for texel in seeds::texels(case.table, ROWS, 0x1a9b).into_iter().take_while(|_| case.goes_on()) {
         let point = case.table.grid.texel(texel);
-        let Ok(model) = sweep.model(point.values()) else { continue };
-        let view = sweep.view(point.values());
+        let Some(model) = lobes.build(lobe, point.values(), Side::Above) else { continue };
+        let view = lobes.view(lobe, point.values());
         let marginal = importance::marginal(&*model, view, 1e-5);
         let Ok(chart) = integrate(&*model, view, &[Functional::One], 1e-5) else { continue };
         let (a, b) = (marginal.total, chart.value[0]);
         let error = marginal.error + chart.error[0] + ROUNDING;
-        outcome.tighten(error - (a - b).abs(), || {
+        watch.see(error - (a - b).abs(), || {
             format!("{a:.9} against {b:.9}, {}", place(&case.table.grid, texel))
         });
     }
-    outcome
+    watch.outcome("no texel with an albedo")
 }
 
 /// A cumulative table is 0 at 0 and everything far out.
-fn ends(case: &Case<'_>, profile: &Profile) -> Outcome {
+fn ends(case: &Case<'_>) -> Outcome {
     let spec = &case.bound.spec;
-    let all =
-        if spec.kind.id == "diffusion-profile" { diffusion_profile::factor(spec, profile) } else { [1.0; 3] };
-    let end = outwards(profile).last().copied().unwrap_or(0.0);
-    let mut outcome = Outcome::start();
+    let Ok(profile) = Profile::new(spec) else { return nothing() };
+    let radial = spec.roles().iter().any(|role| matches!(role, Role::ProfileWithin(_)));
+    let all = if radial { diffusion_profile::factor(spec, &profile) } else { [1.0; 3] };
+    let end = outwards(&profile).last().copied().unwrap_or(0.0);
+    let mut watch = Watch::default();
     for (at, part) in [(0.0, 0.0), (1e3 * end, 1.0)] {
         match case.bound.baker.texel(&[at], case.tolerance) {
             Ok(e) => {
                 for (c, all) in all.iter().enumerate() {
                     // beyond the end of the profile less than 1e-17 leaves, of the kernel of a slow tail a little more
                     let margin = e.error[c] + 1e-10 - (e.value[c] - part * all).abs();
-                    outcome.tighten(margin, || format!("channel {c}: {} at {at}", e.value[c]));
+                    watch.see(margin, || format!("channel {c}: {} at {at}", e.value[c]));
                 }
             }
-            Err(_) => outcome.tighten(f64::NAN, || format!("no value at {at}")),
+            Err(_) => watch.see(f64::NAN, || format!("no value at {at}")),
         }
     }
-    outcome
+    watch.outcome("no row")
 }
 
 fn outwards(profile: &Profile) -> Vec<f64> {
@@ -171,17 +200,17 @@ fn outwards(profile: &Profile) -> Vec<f64> {
 /// The weights of each channel sum to 1.
 fn weights(case: &Case<'_>) -> Outcome {
     let channels = case.table.channels.len();
-    let mut outcome = Outcome::start();
-    for c in 1..4 {
+    let mut watch = Watch::default();
+    let weights = case.spec().roles().into_iter().enumerate();
+    for (c, _) in weights.filter(|(_, role)| matches!(role, Role::GaussianWeight(_))) {
         let sum: f64 = (0..case.table.grid.len()).map(|t| case.table.values[t * channels + c]).sum();
-        outcome
-            .tighten(ROUNDING - (sum - 1.0).abs(), || format!("{} sum to {sum}", case.table.channels[c].id));
+        watch.see(ROUNDING - (sum - 1.0).abs(), || format!("{} sum to {sum}", case.table.channels[c].id));
     }
-    outcome
+    watch.outcome("no row")
 }
 
 /// Up to [`ROWS`] values of an axis, spread over it.
-fn rows(case: &Case<'_>, axis: usize) -> Vec<f64> {
+pub(super) fn rows(case: &Case<'_>, axis: usize) -> Vec<f64> {
     let grid = &case.bound.spec.grid;
     let stride: usize = grid.axes()[..axis].iter().map(|a| a.len).product();
     let len = grid.axes()[axis].len;
@@ -229,7 +258,7 @@ fn add_up(
 }
 
 fn tighten(
-    outcome: &mut Outcome,
+    watch: &mut Watch,
     sum: &Total,
     channels: std::ops::Range<usize>,
     expected: f64,
@@ -237,7 +266,7 @@ fn tighten(
 ) {
     for c in channels {
         let (value, error) = (sum.value[c], sum.error[c] + ROUNDING);
-        outcome.tighten(error - (value - expected).abs(), || {
+        watch.see(error - (value - expected).abs(), || {
             format!("channel {c}: {value:.12} against {expected}, {}", at())
         });
     }

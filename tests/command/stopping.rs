@@ -97,7 +97,12 @@ fn blocks_stop() {
     let axis = |id| Axis::new(Quantity::find(id).unwrap(), 16, Texel::Center);
     let grid = Grid::new(vec![axis("mu"), axis("roughness")]).unwrap();
     let table = Table {
-        channels: vec![Channel { id: "x".into(), meaning: "x".into(), range: [0.0, 1.0] }],
+        channels: vec![Channel {
+            id: "x".into(),
+            meaning: "x".into(),
+            range: [0.0, 1.0],
+            role: String::new(),
+        }],
         values: (0..256).map(|i| f64::from(i) / 256.0).collect(),
         errors: vec![0.0; 256],
         evaluations: vec![1; 256],

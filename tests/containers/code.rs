@@ -55,7 +55,12 @@ pub(crate) fn table(axes: Vec<Axis>, channels: usize) -> Table {
     let x = |i: usize| (i as f64 * 0.618_033_988_749_895 + 0.1).fract() - 0.3;
     Table {
         channels: (0..channels)
-            .map(|c| Channel { id: format!("v{c}"), meaning: "∫ f µ dω".into(), range: [-1.0, 1.0] })
+            .map(|c| Channel {
+                id: format!("v{c}"),
+                meaning: "∫ f µ dω".into(),
+                range: [-1.0, 1.0],
+                role: String::new(),
+            })
             .collect(),
         values: (0..n).map(|i| if i % 17 == 3 { 1e-9 } else { x(i) }).collect(),
         errors: vec![0.0; n],

@@ -14,7 +14,12 @@ pub(crate) fn table(lengths: &[usize], channels: usize) -> Table {
     let x = |i: usize| (i as f64 * 0.618_033_988_749_895 + 0.1).fract();
     Table {
         channels: (0..channels)
-            .map(|c| Channel { id: format!("v{c}"), meaning: "a number".into(), range: [0.0, 1.0] })
+            .map(|c| Channel {
+                id: format!("v{c}"),
+                meaning: "a number".into(),
+                range: [0.0, 1.0],
+                role: String::new(),
+            })
             .collect(),
         values: (0..n).map(x).collect(),
         errors: (0..n).map(|i| 1e-9 * i as f64).collect(),

@@ -21,7 +21,12 @@ fn table(lengths: &[usize], channels: usize) -> Table {
     let n = grid.len() * channels;
     Table {
         channels: (0..channels)
-            .map(|c| Channel { id: format!("v{c}"), meaning: "∫ f µ dω".into(), range: [0.0, 1.0] })
+            .map(|c| Channel {
+                id: format!("v{c}"),
+                meaning: "∫ f µ dω".into(),
+                range: [0.0, 1.0],
+                role: String::new(),
+            })
             .collect(),
         values: (0..n).map(|i| (i as f64 * 0.618_033_988_749_895 + 0.1).fract()).collect(),
         errors: vec![1e-9; n],

@@ -2,7 +2,9 @@
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
 use brdfbake::encode::{EncodeInput, Encoder, Storage, quantise_table};
-use brdfbake::grid::provenance::{AxisRecord, Encoding, Integration, LawRecord, RecipeId, Subject};
+use brdfbake::grid::provenance::{
+    AxisRecord, Encoding, Integration, LawRecord, LawResult, RecipeId, Subject,
+};
 use brdfbake::grid::{Axis, Channel, Grid, Provenance, Quantity, Table, Texel, Warp};
 
 /// Seven texels of sqrt(mu) at their centres, five of roughness.
@@ -14,7 +16,9 @@ pub(crate) fn grid() -> Grid {
 }
 
 pub(crate) fn channel(id: &str) -> Channel {
-    Channel { id: id.to_owned(), meaning: format!("{id} = ∫ f µ dω"), range: [0.0, 1.0] }
+    Channel {
+        id: id.to_owned(), meaning: format!("{id} = ∫ f µ dω"), range: [0.0, 1.0], role: String::new()
+    }
 }
 
 /// A table with `value(i, x)` in value number `i`; x goes through (0, 1) without pattern.
@@ -66,10 +70,14 @@ pub(crate) fn provenance(table: &Table, storage: Storage) -> Provenance {
         size: None,
         laws: vec![LawRecord {
             law: "energy".to_owned(),
-            held: true,
-            margin: 0.25,
+            result: LawResult::Held,
+            why: None,
+            margin: Some(0.25),
             at: "mu = 0.5, roughness = 0.1".to_owned(),
+            checked: 48,
+            unchecked: 0,
         }],
+        tolerance_met: Some(true),
         verified: true,
         waived: Vec::new(),
     }

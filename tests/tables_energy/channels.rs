@@ -89,7 +89,7 @@ fn five_channels_are_baked_in_one_table_and_obey_the_laws() {
     let table = bake(&bound, 1e-5).unwrap();
     assert_eq!(table.channels.iter().map(|c| c.id.as_str()).next_back(), Some("dfg.diffuse"));
     let (verified, _) = verify::check(&bound, table.clone(), 1e-5, &[]).unwrap();
-    assert!(verified.laws().iter().any(|l| l.law == "cross-check" && l.held));
+    assert!(verified.laws().iter().any(|l| l.law == "cross-check" && l.held()));
     let mut wrong = table;
     wrong.values.chunks_mut(5).for_each(|c| c[0] *= 1.2);
     let findings = verify::check(&bound, wrong, 1e-5, &[]).unwrap_err();

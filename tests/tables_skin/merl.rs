@@ -205,7 +205,12 @@ fn what_does_not_fit_is_refused() {
             .collect(),
     );
     let grid = grid.unwrap();
-    let channels = [brdfbake::grid::Channel { id: "f".into(), meaning: String::new(), range: [0.0, 1.0] }];
+    let channels = [brdfbake::grid::Channel {
+        id: "f".into(),
+        meaning: String::new(),
+        range: [0.0, 1.0],
+        role: String::new(),
+    }];
     let input = brdfbake::encode::EncodeInput {
         grid: &grid,
         channels: &channels,

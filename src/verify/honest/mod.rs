@@ -1,0 +1,260 @@
+//! An estimate is honest: at seeded texels the baked value is compared with a rule that shares nothing with the baker's.
+//!
+//! Every row is met at least once, and 135 texels or all of them: a fault in 5 % of the texels, or in a whole row, of five times
+//! estimate plus tolerance is found with a probability above 0.999 (`tests/laws/honest.rs`). A texel that the rule cannot judge (its
+//! own error is above half of estimate plus tolerance) is replaced by another one of its row; where too few are left the law was not
+//! checked, and says so.
+//!
+//! Each family of [`Role`]s has a rule of its own kind. The parameters of a fit have none, nor has the light in a layer of fibres, of
+//! which random walks are all there is to compare with ([`cross_check`](super::cross_check)).
+
+mod colour;
+mod direction;
+mod fresnel;
+mod hemisphere;
+mod integrals;
+mod media;
+mod models;
+mod normals;
+mod profiles;
+mod quad;
+mod sphere;
+mod strata;
+mod weight;
+
+use super::{Case, Law, Outcome, Watch};
+use crate::tables::{Role, Spec, place};
+pub(super) use integrals::albedo;
+use rayon::prelude::*;
+
+/// The law.
+pub static LAW: Law = Law {
+    id: "honest",
+    statement: "at seeded texels, each row at least once, the value is that of an independent rule within three estimates",
+    margin: "the larger of 3 estimates and 1e-13 max(1, E), plus the error of the rule, minus the difference",
+    code: 4005,
+    formal: false,
+    concerns: |spec| spec.roles().into_iter().any(has_rule),
+    check,
+};
+
+/// How many estimates a value may be off, and the rounding that nobody is blamed for.
+const ESTIMATES: f64 = 3.0;
+const ROUNDING: f64 = 1e-13;
+
+/// Largest part of the texels that no rule could judge for which the law still counts as checked.
+const LOST: f64 = 0.05;
+
+/// A value by an independent rule, and how far it may be off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Truth {
+    pub(super) value: f64,
+    pub(super) error: f64,
+}
+
+/// Is there an independent rule for a channel?
+fn has_rule(role: Role) -> bool {
+    !matches!(
+        role,
+        Role::Matrix(..)
+            | Role::FitDistance(..)
+            | Role::Variance
+            | Role::GaussianWeight(_)
+            | Role::GaussianResidual(_)
+            | Role::FibreAlbedo(_)
+            | Role::FibreLobe(..)
+            | Role::FibreDistance
+    )
+}
+
+/// By which route the integrals of lobes are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Route {
+    /// The sum that every value is compared with.
+    First,
+    /// In other panels, finer, lobe by lobe: asked where the first one refutes a value.
+    Second,
+    /// By drawing from the model: what a narrow lobe that both sums pass by would show in.
+    Drawn,
+}
+
+/// One question to a rule.
+#[derive(Debug, Clone, Copy)]
+struct Asked<'a> {
+    spec: &'a Spec,
+    /// Base values of the point.
+    at: &'a [f64],
+    /// The baked values of the texel.
+    baked: &'a [f64],
+    /// For each channel the error that the rule should aim at.
+    targets: &'a [f64],
+    /// Index of the texel.
+    texel: usize,
+    route: Route,
+}
+
+/// The rules of a table.
+struct Rules<'a> {
+    case: &'a Case<'a>,
+    models: models::Models,
+    profiles: Option<profiles::Profiles>,
+    colour: Option<colour::Colour>,
+    directions: direction::Directions,
+}
+
+impl<'a> Rules<'a> {
+    fn new(case: &'a Case<'a>) -> Rules<'a> {
+        let spec = case.spec();
+        Rules {
+            case,
+            models: models::Models::new(spec),
+            profiles: profiles::Profiles::new(spec),
+            colour: colour::Colour::new(spec),
+            directions: direction::Directions::new(spec),
+        }
+    }
+
+    /// What the rules say of every channel of a texel; nothing where they cannot say.
+    fn truths(&self, asked: &Asked<'_>) -> Vec<Option<Truth>> {
+        let roles = asked.spec.roles();
+        let mut truths = self.models.truths(asked, &roles);
+        for (truth, other) in truths.iter_mut().zip(self.directions.truths(asked, &roles)) {
+            *truth = truth.or(other);
+        }
+        for (c, (role, truth)) in roles.into_iter().zip(&mut truths).enumerate() {
+            if truth.is_none() {
+                *truth = fresnel::truth(role, asked.spec, asked.at)
+                    .or_else(|| normals::truth(role, asked))
+                    .or_else(|| media::truth(role, asked, c))
+                    .or_else(|| sphere::truth(role, asked))
+                    .or_else(|| self.profiles.as_ref().and_then(|p| p.truth(role, asked, c)))
+                    .or_else(|| self.colour.as_ref().and_then(|p| p.truth(role, asked, c)));
+            }
+        }
+        truths
+    }
+
+    /// Judges every channel of a texel that has a rule; false where one of them could not be judged.
+    fn judge(&self, texel: usize, watch: &mut Watch) -> bool {
+        let (case, spec) = (self.case, self.case.spec());
+        let point = case.table.grid.texel(texel);
+        let n = case.table.channels.len();
+        let targets: Vec<f64> = (0..n).map(|c| 0.5 * self.limit(texel, c)).collect();
+        let ask = |route| {
+            let asked = Asked {
+                spec,
+                at: point.values(),
+                baked: case.table.at(texel),
+                targets: &targets,
+                texel,
+                route,
+            };
+            self.truths(&asked)
+        };
+        let first = ask(Route::First);
+        let (mut second, mut drawn) = (None, None);
+        let mut judged = true;
+        for (c, channel) in spec.layout.channels.iter().enumerate().filter(|(_, c)| has_rule(c.role)) {
+            let mut verdict = self.verdict(texel, c, first[c]);
+            if !matches!(verdict, Verdict::Margin(margin, _) if margin >= 0.0) {
+                let again = second.get_or_insert_with(|| ask(Route::Second))[c];
+                verdict = self.settle(verdict, self.verdict(texel, c, again));
+            }
+            if let Verdict::Margin(margin, truth) = &verdict
+                && *margin < 0.0
+            {
+                let draws = drawn.get_or_insert_with(|| ask(Route::Drawn))[c];
+                if let Some(draws) = draws.filter(|d| (d.value - truth.value).abs() > d.error + truth.error) {
+                    let Truth { value, error } = draws;
+                    let why = format!(
+                        "the independent sum {:e} and draws from the model, {value:e} +- {error:.1e}, disagree",
+                        truth.value
+                    );
+                    verdict = Verdict::Unknown(why);
+                }
+            }
+            let place = || place(&case.table.grid, texel);
+            match verdict {
+                Verdict::Margin(margin, truth) => watch.see(margin, || {
+                    let (v, e) = case.at(texel, c);
+                    let Truth { value, error } = truth;
+                    format!("{} = {v:e} +- {e:.1e} against {value:e} +- {error:.1e}, {}", channel.id, place())
+                }),
+                Verdict::Unknown(why) => {
+                    watch.miss(|| format!("{}: {why}, {}", channel.id, place()));
+                    judged = false;
+                }
+            }
+        }
+        judged
+    }
+
+    /// How far off a rule may be to judge a channel.
+    fn limit(&self, texel: usize, channel: usize) -> f64 {
+        0.5 * (self.case.at(texel, channel).1 + self.case.tolerance)
+    }
+
+    fn verdict(&self, texel: usize, channel: usize, truth: Option<Truth>) -> Verdict {
+        let (v, e) = self.case.at(texel, channel);
+        match truth {
+            Some(t) if t.value.is_finite() && t.error <= self.limit(texel, channel) => {
+                let allowed = (ESTIMATES * e).max(ROUNDING * t.value.abs().max(1.0)) + t.error;
+                Verdict::Margin(allowed - (v - t.value).abs(), t)
+            }
+            Some(t) if t.value.is_finite() => {
+                Verdict::Unknown(format!("the independent rule is only sure to {:.1e}", t.error))
+            }
+            _ => Verdict::Unknown("the independent rule has no value".to_owned()),
+        }
+    }
+
+    /// What two sums say together: either may confirm a value, both must refute it, and agree with each other.
+    fn settle(&self, first: Verdict, second: Verdict) -> Verdict {
+        match (&first, &second) {
+            (Verdict::Margin(_, a), Verdict::Margin(margin, b)) if *margin < 0.0 => {
+                let apart = (a.value - b.value).abs();
+                if apart <= a.error + b.error + ROUNDING * a.value.abs().max(1.0) {
+                    return second;
+                }
+                Verdict::Unknown(format!("two independent sums differ by {apart:.1e}"))
+            }
+            (Verdict::Margin(..), Verdict::Unknown(_)) => {
+                Verdict::Unknown("a finer independent sum does not bear the first one out".to_owned())
+            }
+            _ => second,
+        }
+    }
+}
+
+/// What a rule says of a value.
+enum Verdict {
+    /// Distance to what is allowed, and the truth that it was measured from.
+    Margin(f64, Truth),
+    /// Nothing, for this reason.
+    Unknown(String),
+}
+
+fn check(case: &Case<'_>) -> Outcome {
+    let rules = Rules::new(case);
+    let strata = strata::strata(&case.table.grid, 0x40e5);
+    let looked: Vec<(Watch, bool)> = strata
+        .par_iter()
+        .map(|row| {
+            let mut watch = Watch::default();
+            let judged = row.iter().take_while(|_| case.goes_on()).any(|t| rules.judge(*t, &mut watch));
+            (watch, judged)
+        })
+        .collect();
+    let lost = looked.iter().filter(|(_, judged)| !judged).count();
+    let total = looked.len();
+    let mut watch = Watch::default();
+    for (seen, _) in looked {
+        watch.join(seen);
+    }
+    let few = lost as f64 > (LOST * total as f64).max(1.0);
+    if few && !watch.is_broken() && watch.checked() > 0 {
+        let why = watch.why().unwrap_or_default().to_owned();
+        return Outcome::NotChecked(format!("{lost} of {total} texels could not be judged: {why}"));
+    }
+    watch.outcome("no channel has an independent rule")
+}
