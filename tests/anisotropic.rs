@@ -124,5 +124,5 @@ fn models_that_diverge_at_grazing_say_so() {
     let axes = vec![axis("mu", 5, Texel::Endpoint)];
     let bound = request("albedo", "ward", r#"{"alpha": 0.3}"#, axes).unwrap();
     let error = bake(&bound, 1e-6).unwrap_err().to_string();
-    assert!(error.starts_with("texel 0 (mu = 0") && error.ends_with("channel 0 is inf"), "{error}");
+    assert!(error.starts_with("texel 0 (mu = 0") && error.ends_with("e is inf"), "{error}");
 }

@@ -93,6 +93,9 @@ struct Asked<'a> {
     route: Route,
 }
 
+/// How many times its own estimate the error of a rule may be: at kinks that a rule does not know two of its levels agree too soon.
+const DOUBT: f64 = 3.0;
+
 /// The rules of a table.
 struct Rules<'a> {
     case: &'a Case<'a>,
@@ -139,7 +142,7 @@ impl<'a> Rules<'a> {
         let (case, spec) = (self.case, self.case.spec());
         let point = case.table.grid.texel(texel);
         let n = case.table.channels.len();
-        let targets: Vec<f64> = (0..n).map(|c| 0.5 * self.limit(texel, c)).collect();
+        let targets: Vec<f64> = (0..n).map(|c| self.limit(texel, c) / DOUBT).collect();
         let ask = |route| {
             let asked = Asked {
                 spec,
@@ -149,7 +152,12 @@ impl<'a> Rules<'a> {
                 texel,
                 route,
             };
-            self.truths(&asked)
+            let mut truths = self.truths(&asked);
+            // standard errors of draws are no heuristics
+            if route != Route::Drawn {
+                truths.iter_mut().flatten().for_each(|t| t.error *= DOUBT);
+            }
+            truths
         };
         let first = ask(Route::First);
         let (mut second, mut drawn) = (None, None);
