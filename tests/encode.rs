@@ -139,7 +139,7 @@ fn a_table_names_the_texel_that_does_not_fit() {
     t.values[5] = 1.25;
     let fault = quantise_table(&t, Storage::Unorm16).unwrap_err();
     assert_eq!((fault.texel, fault.channel.as_str()), (5, "albedo"));
-    let expected = "channel albedo at mu = 0.617347, roughness = 0.100000: value 1.25 outside the range [0, 1] that \
+    let expected = "channel albedo at mu = 0.617347, roughness = 0.1: value 1.25 outside the range [0, 1] that \
                     unorm16 encodes; store it as half or float";
     assert_eq!(fault.to_string(), expected);
 }

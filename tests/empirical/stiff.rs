@@ -151,7 +151,7 @@ fn bad_parameters_are_refused_with_their_numbers() {
             r#"{"kd": 0.7, "ks": 0.6}"#,
             "phong: kd = 0.7 and ks = 0.6 add up to more than 1; lower one of them",
         ),
-        ("phong", r#"{"n": -1}"#, "phong: n = -1 outside [0, 10000000]"),
+        ("phong", r#"{"n": -1}"#, "phong: n = -1 outside [0, 1e7]"),
         ("lafortune", r#"{"lobes": 3}"#, "lafortune: lobes = 3 is not a list of rows [cx, cy, cz, n, rho]"),
         (
             "lafortune",
