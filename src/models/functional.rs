@@ -42,7 +42,7 @@ impl Functional {
     #[must_use]
     pub fn crease(self) -> Option<Crease> {
         match self {
-            Functional::Dielectric(eta) => Fresnel::Dielectric { eta }.crease(),
+            Functional::Dielectric(eta) => Fresnel::Dielectric { eta }.crease().or_else(|| dip(eta)),
             // a point: wm along wo
             Functional::Power(e) if e.fract().abs() > 0.0 && e < SMOOTH => {
                 Some(Crease { at: 1.0, width: 0.0 })
@@ -50,6 +50,21 @@ impl Functional {
             _ => None,
         }
     }
+}
+
+/// Where the exact curve falls to F0 before it dips below it: a corner of the weight; none where it does not dip.
+fn dip(eta: f64) -> Option<Crease> {
+    let f0 = fresnel::dielectric(1.0, eta).unpolarised();
+    let above = |v: f64| fresnel::dielectric(v, eta).unpolarised() > f0;
+    let (mut low, mut high) = (0.0, 1.0 - 1e-3);
+    if above(high) {
+        return None;
+    }
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        if above(middle) { low = middle } else { high = middle }
+    }
+    Some(Crease { at: low, width: 0.0 })
 }
 
 /// Powers of `1 - v` above this are smooth enough where they vanish.

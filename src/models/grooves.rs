@@ -30,7 +30,7 @@ const TRUST: Trust = Trust { gain: &[2.4, 2.4, 1.9, 1.6, 1.4], memory: &[0.1, 0.
 
 /// The same for facets on edge, whose masking is met at many heights.
 const TRUST_UPRIGHT: Trust =
-    Trust { gain: &[2.4, 2.4, 0.3, 0.1, 0.3], memory: &[0.1, 0.1, 0.02, 0.01, 0.003] };
+    Trust { gain: &[2.4, 2.4, 0.12, 0.1, 0.3], memory: &[0.1, 0.1, 0.02, 0.01, 0.003] };
 
 /// Grooves with their facets.
 pub(super) struct Grooves<'a> {

@@ -161,7 +161,7 @@ fn visible(model: &dyn Brdf, view: View, curve: Functional, tolerance: f64) -> R
         let term = |i: usize| densities[i] * nodes.weight[i] * curve.at(nodes.cos_d[i]);
         sums[0] += (0..nodes.len).map(term).sum::<f64>();
     };
-    let e = match model.chart() {
+    let e = match model.chart().map(|chart| chart.creased(curve.crease())) {
         Some(chart) => ladder::integrate(&chart, view, 1, tolerance, &mut add),
         None => adaptive::integrate(view, 1, tolerance, &mut add),
     };
