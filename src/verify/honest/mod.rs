@@ -94,7 +94,7 @@ struct Asked<'a> {
 }
 
 /// How many times its own estimate the error of a rule may be: at kinks that a rule does not know two of its levels agree too soon.
-const DOUBT: f64 = 3.0;
+const DOUBT: f64 = 1.5;
 
 /// The rules of a table.
 struct Rules<'a> {
@@ -142,7 +142,7 @@ impl<'a> Rules<'a> {
         let (case, spec) = (self.case, self.case.spec());
         let point = case.table.grid.texel(texel);
         let n = case.table.channels.len();
-        let targets: Vec<f64> = (0..n).map(|c| self.limit(texel, c) / DOUBT).collect();
+        let targets: Vec<f64> = (0..n).map(|c| 0.5 * self.limit(texel, c)).collect();
         let ask = |route| {
             let asked = Asked {
                 spec,
