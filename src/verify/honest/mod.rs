@@ -93,8 +93,9 @@ struct Asked<'a> {
     route: Route,
 }
 
-/// How many times its own estimate the error of a rule may be: at kinks that a rule does not know two of its levels agree too soon.
-const DOUBT: f64 = 1.5;
+/// How many times its own estimate the error of a rule may be before it blames a value: at kinks that it does not know two of its
+/// levels agree too soon.
+const DOUBT: f64 = 2.0;
 
 /// The rules of a table.
 struct Rules<'a> {
@@ -152,12 +153,7 @@ impl<'a> Rules<'a> {
                 texel,
                 route,
             };
-            let mut truths = self.truths(&asked);
-            // standard errors of draws are no heuristics
-            if route != Route::Drawn {
-                truths.iter_mut().flatten().for_each(|t| t.error *= DOUBT);
-            }
-            truths
+            self.truths(&asked)
         };
         let first = ask(Route::First);
         let (mut second, mut drawn) = (None, None);
@@ -206,7 +202,7 @@ impl<'a> Rules<'a> {
         let (v, e) = self.case.at(texel, channel);
         match truth {
             Some(t) if t.value.is_finite() && t.error <= self.limit(texel, channel) => {
-                let allowed = (ESTIMATES * e).max(ROUNDING * t.value.abs().max(1.0)) + t.error;
+                let allowed = (ESTIMATES * e).max(ROUNDING * t.value.abs().max(1.0)) + DOUBT * t.error;
                 Verdict::Margin(allowed - (v - t.value).abs(), t)
             }
             Some(t) if t.value.is_finite() => {
