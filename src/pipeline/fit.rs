@@ -16,8 +16,8 @@ use rayon::prelude::*;
 const PER_CELL: [(usize, usize); 3] = [(8, 1 << 17), (4, LIMIT), (2, LIMIT)];
 /// The same for a trial, which only has to tell whether a table is worth the full fit.
 const PER_CELL_QUICK: [(usize, usize); 2] = [(4, 1 << 14), (2, LIMIT)];
-/// Most points of the truth.
-const LIMIT: usize = 1 << 22;
+/// Most points of the truth: two intervals a cell of 1024 x 1024 texels, both ends included.
+const LIMIT: usize = (2 * 1024 + 1) * (2 * 1024 + 1);
 
 /// The values of a table for every objective, and the truth that they were fitted to.
 pub(super) struct Fitted {
@@ -123,7 +123,8 @@ pub(super) fn fit(
     let channel = |c: usize| {
         let exact: Vec<f64> = table.values.iter().skip(c).step_by(n).copied().collect();
         let f: Vec<f64> = truth.iter().map(|t| t.2[c]).collect();
-        let range = feasible(table.channels[c].range, &exact);
+        let errors: Vec<f64> = table.errors.iter().skip(c).step_by(n).copied().collect();
+        let (exact, range) = feasible(table.channels[c].range, &exact, &errors);
         (samples.least_squares(&f, &exact, range), samples.minimax(&f, &exact, range))
     };
     let (least_squares, minimax): (Vec<_>, Vec<_>) = (0..n).into_par_iter().map(channel).unzip();
@@ -135,7 +136,14 @@ pub(super) fn fit(
     Ok(Fitted { samples, truth, least_squares, minimax })
 }
 
-/// The range of the channel, with the values that are outside by their own error.
-fn feasible([lo, hi]: [f64; 2], exact: &[f64]) -> [f64; 2] {
-    [exact.iter().copied().fold(lo, f64::min), exact.iter().copied().fold(hi, f64::max)]
+/// Values to start from, and the range that fitted ones keep: that of the channel, whose ends stand for values beyond them by no
+/// more than their own error; wider only where a value is further out, which is a finding that somebody let through.
+fn feasible([lo, hi]: [f64; 2], exact: &[f64], errors: &[f64]) -> (Vec<f64>, [f64; 2]) {
+    let kept = |(v, error): (&f64, &f64)| {
+        let end = v.clamp(lo, hi);
+        if (v - end).abs() <= *error { end } else { *v }
+    };
+    let kept: Vec<f64> = exact.iter().zip(errors).map(kept).collect();
+    let range = [kept.iter().copied().fold(lo, f64::min), kept.iter().copied().fold(hi, f64::max)];
+    (kept, range)
 }

@@ -4,6 +4,7 @@
 //! The pipeline never prints: it sends [`Event`]s to a [`Progress`].
 
 pub mod audit;
+mod advice;
 mod event;
 mod fit;
 mod gather;

@@ -2,7 +2,7 @@
 //! interface, that crosses it.
 
 use super::sides::Sides;
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Setting, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::Axis;
 use crate::integrate::Estimate;
@@ -47,14 +47,16 @@ pub static INFO: TableInfo = TableInfo {
     params: &[],
     laws: &["finite", "range", "energy", "cross-check", "reciprocity"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "Axes: mu, phi (the view azimuth, for anisotropic models), and any number parameter of the model (alpha or roughness, f0, \
         eta, ...). t wants a model that transmits, inside one with eta; axes f0_root4 and f0_root4_inverse spread eta above and \
         below 1.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
-    super::dfg::view_and_roughness(32)
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
+    super::default_axes::white_albedo()
 }
 
 struct Albedo {

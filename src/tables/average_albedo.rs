@@ -2,7 +2,7 @@
 
 use super::integral::{Functional, integrate};
 use super::sides::Sides;
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Setting, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::graded::{Graded, Order};
@@ -41,12 +41,14 @@ pub static INFO: TableInfo = TableInfo {
     params: &[],
     laws: &["finite", "range", "energy", "reciprocity"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "Integrated directly, not from a baked E table: no interpolation error enters. Axes: any number parameter of the model.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
-    Quantity::find("roughness").map(|q| Axis::new(q, 32, Texel::Endpoint)).into_iter().collect()
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
+    Quantity::find("roughness").map(|q| Axis::new(q, 64, Texel::Endpoint)).into_iter().collect()
 }
 
 struct AverageAlbedo {

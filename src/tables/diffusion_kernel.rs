@@ -9,9 +9,10 @@
 //! the least length of the profile. Gaussians are closed forms.
 
 use super::profile::{self, Profile, Rgb};
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::default_axes::axis;
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Setting, Spec, TableInfo, TexelError};
 use crate::cite;
-use crate::grid::{Axis, Quantity, Texel, Warp};
+use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS, Sums, line};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -54,13 +55,14 @@ pub static INFO: TableInfo = TableInfo {
     params: profile::PARAMS,
     laws: &["finite", "range", "total", "monotone"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: profile::NOTES,
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
-    let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([0.0, 16.0]).warped(Warp::Power(0.5));
-    Quantity::find("offset").map(axis).into_iter().collect()
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
+    axis("offset", 256, [0.0, 16.0], Warp::Power(0.25)).into_iter().collect()
 }
 
 struct Kernel {

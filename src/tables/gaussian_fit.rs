@@ -9,7 +9,7 @@
 //! by Nelder and Mead in their logarithms, weights by non-negative least squares within.
 
 use super::profile::{self, Profile, Rgb};
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Setting, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::{Estimate, MAX_CHANNELS, gauss};
@@ -62,12 +62,14 @@ pub static INFO: TableInfo = TableInfo {
     params: profile::PARAMS,
     laws: &["finite", "range", "total"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: false,
     notes: "The length of the axis is the number of Gaussians, at most 16. The error of the texels is rounding; what the fit leaves over stands in \
         the rule of the file and in the layout weights-residual. Switch reconstruction off: nobody reads between Gaussians.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
     let axis = |q| Axis::new(q, 6, Texel::Endpoint).over([0.0, 5.0]);
     Quantity::find("gaussian").map(axis).into_iter().collect()
 }

@@ -5,8 +5,9 @@
 
 use super::ltc_fit::{self, Family, Fitted};
 use super::sweep::Sweep;
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError, finite};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Setting, Spec, TableInfo, TexelError, finite};
 use crate::cite;
+use crate::grid::Axis;
 use crate::grid::provenance::{Residual, Spread};
 use crate::grid::table::{Extreme, Table};
 use crate::integrate::{Estimate, MAX_CHANNELS};
@@ -86,9 +87,12 @@ pub static INFO: TableInfo = TableInfo {
     model: ModelUse::Any("ggx"),
     params: &[],
     laws: &["range", "lobe", "reciprocity"],
-    axes: || super::ltc_magnitude::axes(LEAST_ROUGHNESS),
-    notes: "Errors are those of the best matrix, not of its lobe: how well the lobe fits is in the channels ltc.l3 and ltc.variation and, as largest \
-        and mean, in every file. Broad lobes leave the matrix loose, so entries cost more than fits: ask for 1e-3, not less. A \
+    axes: default_axes,
+    least_tolerance: |_| 1e-3,
+    blended: true,
+    notes: "The error of a matrix entry is that of the residual of its lobe (ltc.l3), which is what a fit promises: broad lobes and grazing views \
+        leave the matrix loose, and other matrices fit as well. Levels are raised until the entries agree too, or end. How well the lobe fits is \
+        in the channels ltc.l3 and ltc.variation and, as largest and mean, in every file. Ask for 1e-3, not less. A \
         mirror has no matrix: keep alpha at 1e-5 or more. Of a model with a Fresnel factor that can be split off, f is taken without it. \
         The file's channels go by name: EXR sorts them.",
     bind,
@@ -96,6 +100,12 @@ pub static INFO: TableInfo = TableInfo {
 
 /// alpha = 1e-5, as Heitz and Hill's fitter clamps it.
 const LEAST_ROUGHNESS: f64 = 0.003_162_277_660_168_379_5;
+
+/// Those of Heitz and Hill, whose readers know them; from broader lobes on where entries grow as 1 / alpha, beyond a half.
+fn default_axes(setting: &Setting<'_>) -> Vec<Axis> {
+    let grows = ["ltc.z11", "ltc.z31", "ltc.z22", "ltc.z13", "ltc.a", "ltc.b"].iter().any(|id| setting.holds(id));
+    super::ltc_magnitude::axes(if grows { 0.1 } else { LEAST_ROUGHNESS })
+}
 
 struct Matrix {
     sweep: Sweep,
@@ -110,7 +120,9 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         return Err(BindError::IdleAxis { kind: INFO.id, axis: "phi", allowed });
     }
     let splits = spec.model.as_ref().is_some_and(|(info, _)| info.splits);
-    Ok(Box::new(Matrix { sweep: Sweep::new(spec, splits)?, channels: spec.layout.ids().collect() }))
+    let sweep = Sweep::new(spec, splits)?;
+    sweep.refuse_mirrors(spec.kind.id, "is a mirror: a delta has no lobe to fit")?;
+    Ok(Box::new(Matrix { sweep, channels: spec.layout.ids().collect() }))
 }
 
 /// Which fit a channel is taken from.
@@ -140,11 +152,12 @@ impl Baker for Matrix {
             }
             let fitted = ltc_fit::fit(&*model, view, wanted, |f| {
                 // NaN is not content
-                self.channels.iter().filter(|id| mine(id)).all(|id| channel(id, f).1 <= tolerance)
+                self.channels.iter().filter(|id| mine(id)).all(|id| channel(id, f).spread <= tolerance)
             })?;
             e.evaluations = e.evaluations.saturating_add(fitted.evaluations);
             for (i, id) in self.channels.iter().enumerate().filter(|(_, id)| mine(id)) {
-                (e.value[i], e.error[i]) = channel(id, &fitted);
+                let of = channel(id, &fitted);
+                (e.value[i], e.error[i]) = (of.value, of.error);
             }
         }
         finite(e, self.channels.len())
@@ -209,22 +222,32 @@ pub fn stored(table: &Table, texel: usize) -> Option<Inverse> {
     Some(Inverse { m11: a, m13: b, m22: a, m31: 0.0, m33: 1.0 })
 }
 
-/// Value and error of a channel.
-fn channel(id: &str, fitted: &Fitted) -> (f64, f64) {
+/// A channel of a fit.
+struct Value {
+    value: f64,
+    /// Estimate: of a matrix entry that of the residual of its lobe, which is what the table promises.
+    error: f64,
+    /// What the value itself still moves by from level to level: what the fit tries to bring below the tolerance.
+    spread: f64,
+}
+
+fn channel(id: &str, fitted: &Fitted) -> Value {
     let (m, fit, error) = (&fitted.fit.inverse, &fitted.fit, &fitted.error);
+    let entry = |value: f64, spread: f64| Value { value, error: error.l3, spread };
     // over m33, an error of m33 counts too
-    let over_m33 = |v: f64| (v / m.m33, error.entries * (1.0 + (v / m.m33).abs()) / m.m33.abs());
+    let over_m33 = |v: f64| entry(v / m.m33, error.entries * (1.0 + (v / m.m33).abs()) / m.m33.abs());
+    let plain = |value: f64, error: f64| Value { value, error, spread: error };
     match id {
-        "ltc.m11" => (m.m11, error.entries),
-        "ltc.m31" => (m.m31, error.entries),
-        "ltc.m13" => (m.m13, error.entries),
-        "ltc.m33" => (m.m33, error.entries),
+        "ltc.m11" => entry(m.m11, error.entries),
+        "ltc.m31" => entry(m.m31, error.entries),
+        "ltc.m13" => entry(m.m13, error.entries),
+        "ltc.m33" => entry(m.m33, error.entries),
         "ltc.z11" => over_m33(m.m11),
         "ltc.z31" => over_m33(m.m31),
         "ltc.z22" | "ltc.a" => over_m33(m.m22),
         "ltc.z13" | "ltc.b" => over_m33(m.m13),
-        "ltc.l3" | "ltc.sheared-l3" => (fit.l3, error.l3),
-        "ltc.variation" | "ltc.sheared-variation" => (fit.variation, error.variation),
-        _ => (fit.albedo, error.albedo),
+        "ltc.l3" | "ltc.sheared-l3" => plain(fit.l3, error.l3),
+        "ltc.variation" | "ltc.sheared-variation" => plain(fit.variation, error.variation),
+        _ => plain(fit.albedo, error.albedo),
     }
 }

@@ -17,7 +17,7 @@
 //! Integrals run over the angle, split at the kinks of the clamped cosine and at the scales of the profile.
 
 use super::profile::{self, Profile, Rgb};
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Setting, Spec, TableInfo, TexelError};
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::{Estimate, MAX_CHANNELS, Sums, line};
@@ -51,6 +51,8 @@ pub static INFO: TableInfo = TableInfo {
     params: &PARAMS,
     laws: &["finite", "range", "total"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "The row of curvature 0 is clamp(N.L) exactly. Penner's axes: ndotl from -1 to 1, curvature 1/r in 1/mm; lengths in mm. \
         Profile burley needs over = sphere: on a ring its 1/r makes both integrals diverge.",
     bind,
@@ -62,7 +64,7 @@ static PARAMS: [Param; 1 + profile::PARAMS.len()] = profile::with(Param::choice(
     &["ring", "sphere"],
 ));
 
-fn default_axes() -> Vec<Axis> {
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
     // odd, so that the terminator, a kink where nothing is curved, lies on a texel: four times better than 128
     let axis =
         |id: &str, len, domain| Quantity::find(id).map(|q| Axis::new(q, len, Texel::Endpoint).over(domain));

@@ -4,7 +4,7 @@
 //! The authors walked at random for two days and ended each walk after 16 events, which at grazing views of thin fibres is too early.
 
 use super::ltc_fit::{self, Sheared};
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Spec, TableInfo, TexelError, finite};
+use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Setting, Spec, TableInfo, TexelError, finite};
 use crate::cite;
 use crate::grid::provenance::{Residual, Spread};
 use crate::grid::table::{Extreme, Table};
@@ -66,6 +66,8 @@ pub static INFO: TableInfo = TableInfo {
     params: &[Param::number("r", "r", "roughness of the fibres, sigma = r^2", RANGE, Preset::Value(0.5))],
     laws: &["finite", "range"],
     axes: default_axes,
+    least_tolerance: |_| 2e-3,
+    blended: true,
     notes: "Unit depth, density and albedo, black ground. The authors' table stores zeros for a and b below R = 3e-6; here they are \
         fitted down to R = 1e-7, and below that to light that was scattered once. Along the normal the lobe is round. Errors are those of \
         the best lobe: how well it fits is in the channel sheen.l3. Each roughness is a layer that is solved once, for all views.",
@@ -75,7 +77,7 @@ pub static INFO: TableInfo = TableInfo {
 /// Range of the roughness.
 const RANGE: [f64; 2] = [0.01, 1.0];
 
-fn default_axes() -> Vec<Axis> {
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
     let axis = |id| {
         let q = Quantity::find(id)?;
         Some(Axis { clamp: Some(RANGE), ..Axis::new(q, 32, Texel::Endpoint) })

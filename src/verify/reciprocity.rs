@@ -2,6 +2,7 @@
 
 use super::{Case, Law, Outcome, seeds};
 use crate::math::frame;
+use crate::models::Brdf;
 use crate::tables::sweep::Sweep;
 use std::f64::consts::TAU;
 
@@ -19,6 +20,19 @@ const BOUND: f64 = 1e-9;
 
 /// Values below this are rounding noise of a vanished tail.
 const NEGLIGIBLE: f64 = 1e-20;
+
+/// Values of a model for a pair of directions and for the same pair turned round, if they differ: the first such pair of a few.
+#[must_use]
+pub fn asymmetry(model: &dyn Brdf) -> Option<(f64, f64)> {
+    let mut seeds = seeds::Seeds::new(0x2ec1);
+    (0..64).find_map(|_| {
+        let mut direction = || frame::spherical(libm::acos(seeds.unit().sqrt()), TAU * seeds.unit());
+        let (a, b) = (direction(), direction());
+        let (forth, back) = (model.eval(a, b), model.eval(b, a));
+        let scale = forth.abs().max(back.abs());
+        ((scale > NEGLIGIBLE || !scale.is_finite()) && !((forth - back).abs() <= BOUND * scale)).then_some((forth, back))
+    })
+}
 
 fn check(case: &Case<'_>) -> Outcome {
     let Ok(sweep) = Sweep::new(&case.bound.spec, false) else { return Outcome::vacuous("no model") };
