@@ -1,8 +1,12 @@
 //! Albedos of every model at seeded draws of the ranges that its parameters declare, against an independent rule.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, clippy::float_cmp, reason = "test")]
 
+#[path = "sweep/baseline.rs"]
+mod baseline;
 #[path = "sweep/check.rs"]
 mod check;
+#[path = "sweep/closed.rs"]
+mod closed;
 #[path = "sweep/curve.rs"]
 mod curve;
 #[path = "sweep/draw.rs"]
@@ -11,6 +15,12 @@ mod draw;
 mod facets;
 #[path = "sweep/glass.rs"]
 mod glass;
+#[path = "sweep/kinds.rs"]
+mod kinds;
+#[path = "sweep/known.rs"]
+mod known;
+#[path = "sweep/lines.rs"]
+mod lines;
 #[path = "sweep/lobe.rs"]
 mod lobe;
 #[path = "sweep/lobes.rs"]
@@ -19,6 +29,8 @@ mod lobes;
 mod quad;
 #[path = "sweep/rows.rs"]
 mod rows;
+#[path = "sweep/texel.rs"]
+mod texel;
 #[path = "sweep/truth.rs"]
 mod truth;
 
@@ -39,11 +51,11 @@ fn variable(name: &str) -> Option<String> {
 
 /// Computes `truth_calibration.csv` and `truth_test.csv`; rows that they hold already are kept.
 ///
-/// `HONESTY_DRAWS` draws a model (100), of `HONESTY_MODELS` only if given (ids, by commas), of `HONESTY_SET` only.
+/// `HONESTY_DRAWS` draws a model (100) that have a truth, of `HONESTY_MODELS` only if given (ids, by commas), of `HONESTY_SET` only.
 #[test]
-#[ignore = "long: half an hour on two cores; writes tests/honesty/truth_*.csv"]
+#[ignore = "long: an hour on two cores; writes tests/honesty/truth_*.csv"]
 fn compute_truths() {
-    let draws: u64 = variable("HONESTY_DRAWS").map_or(100, |n| n.parse().unwrap());
+    let draws: usize = variable("HONESTY_DRAWS").map_or(100, |n| n.parse().unwrap());
     let only = variable("HONESTY_MODELS");
     let set = variable("HONESTY_SET");
     for (name, seed) in [("calibration", draw::CALIBRATION), ("test", draw::TEST)] {
@@ -57,70 +69,64 @@ fn compute_truths() {
                 continue;
             }
             let start = Instant::now();
-            let mut fresh: Vec<(u64, Vec<Row>, f64)> = (0..draws)
-                .into_par_iter()
-                .filter_map(|number| {
-                    let d = draw(info, seed, number);
-                    let held = known
-                        .iter()
-                        .any(|r| r.model == info.id && r.params == d.given && r.mu == d.mu && r.phi == d.phi);
-                    if held {
-                        return None;
-                    }
-                    let start = Instant::now();
-                    if variable("HONESTY_SHOW").is_some() {
-                        eprintln!("{} {number}: {:?} mu {:e} phi {}", info.id, d.given, d.mu, d.phi);
-                    }
-                    let mut all = Vec::new();
-                    let (e, t) = (truth::albedo(&d), truth::transmitted(&d));
-                    for (id, truth) in [(info.id.to_owned(), Some(e)), (format!("{}/T", info.id), t)] {
-                        match truth {
-                            Some(Ok((truth, error))) if truth.is_finite() && error.is_finite() => {
-                                let (params, mu, phi) = (d.given.clone(), d.mu, d.phi);
-                                all.push(Row { model: id, params, mu, phi, truth, error });
-                            }
-                            Some(Ok(v)) => {
-                                eprintln!("DROPPED {id} {number}: {v:?} {:?} mu {:e}", d.given, d.mu)
-                            }
-                            Some(Err(why)) => eprintln!("DROPPED {id} {number}: {why}"),
-                            None => {}
-                        }
-                    }
-                    if start.elapsed().as_secs_f64() > 3.0 {
-                        eprintln!(
-                            "SLOW {} {number} {:.1} s: {:?} mu {:e} phi {}",
-                            info.id,
-                            start.elapsed().as_secs_f64(),
-                            d.given,
-                            d.mu,
-                            d.phi
-                        );
-                    }
-                    Some((number, all, start.elapsed().as_secs_f64()))
-                })
-                .collect();
-            fresh.sort_by_key(|f| f.0);
-            let slowest = fresh.iter().fold(0.0f64, |m, f| m.max(f.2));
-            let worst =
-                fresh.iter().flat_map(|f| &f.1).fold(0.0f64, |m, r| m.max(r.error / r.truth.abs().max(1.0)));
+            let mut rows: Vec<Row> = Vec::new();
+            let mut next = 0;
+            // draws without a truth are replaced by others
+            while rows.iter().filter(|r| r.model == info.id).count() < draws {
+                let missing = draws - rows.iter().filter(|r| r.model == info.id).count();
+                let fresh: Vec<Vec<Row>> = (next..next + missing as u64)
+                    .into_par_iter()
+                    .map(|number| of_draw(&draw(info, seed, number), number, &known))
+                    .collect();
+                next += missing as u64;
+                rows.extend(fresh.into_iter().flatten());
+            }
+            let worst = rows.iter().fold(0.0f64, |m, r| m.max(r.error / r.truth.abs().max(1.0)));
             println!(
-                "{name} {:28} {:4} rows {:6.1} s, slowest {slowest:.2} s, worst error {worst:.1e}",
+                "{name} {:28} {:4} rows of {next} draws {:6.1} s, worst error {worst:.1e}",
                 info.id,
-                fresh.len(),
+                rows.len(),
                 start.elapsed().as_secs_f64()
             );
-            known.extend(fresh.into_iter().flat_map(|f| f.1));
+            known.retain(|r| r.model.split('/').next() != Some(info.id));
+            known.extend(rows);
             rows::write(&path, &known);
         }
     }
+}
+
+/// E and T of a draw, from what is known if it is there.
+fn of_draw(d: &draw::Draw, number: u64, known: &[Row]) -> Vec<Row> {
+    let id = d.model.id;
+    let same = |r: &&Row| {
+        r.model.split('/').next() == Some(id) && r.params == d.given && r.mu == d.mu && r.phi == d.phi
+    };
+    let held: Vec<Row> = known.iter().filter(same).cloned().collect();
+    if !held.is_empty() {
+        return held;
+    }
+    let mut all = Vec::new();
+    for (id, truth) in [(id.to_owned(), Some(truth::albedo(d))), (format!("{id}/T"), truth::transmitted(d))] {
+        match truth {
+            Some(Ok((truth, error))) if truth.is_finite() && error.is_finite() => {
+                let (params, mu, phi) = (d.given.clone(), d.mu, d.phi);
+                all.push(Row { model: id, params, mu, phi, truth, error });
+            }
+            Some(Ok(v)) => eprintln!("DROPPED {id} {number}: {v:?} {:?} mu {:e}", d.given, d.mu),
+            Some(Err(why)) => eprintln!("DROPPED {id} {number}: {why}"),
+            None => {}
+        }
+    }
+    all
 }
 
 #[test]
 fn masking_of_gtr_at_gamma_2_is_that_of_ggx() {
     use brdfbake::terms::smith::Ndf;
     for alpha in [1e-6, 1e-3, 0.2, 1.0, 1.7] {
-        let curve = curve::Curve::new(&|mu| lobe::gtr_mu_lambda(alpha, 2.0, mu, &quad::SECOND));
-        println!("{alpha} {:e}", curve.error());
+        let curve = curve::Curve::new(curve::split(&[-34.0, 34.0], 2.0), 24, &|mu| {
+            lobe::gtr_mu_lambda(alpha, 2.0, mu, &quad::SECOND)
+        });
         let ggx = brdfbake::terms::ggx::Ggx::isotropic(alpha);
         for mu in [0.0, 1e-9, 1e-6, 1e-3, 0.1, 0.5, 0.9, 0.999_999, 1.0] {
             let expected = ggx.mu_lambda(brdfbake::math::frame::from_mu(mu));
@@ -142,40 +148,148 @@ fn truths(name: &str) -> Vec<Row> {
     rows
 }
 
-/// Every row at every tolerance: prints the table, and the worst values as commands.
-#[test]
-#[ignore = "long: minutes"]
-fn sweep() {
-    let set = variable("HONESTY_SET").unwrap_or_else(|| "test".to_owned());
-    let rows = variable("HONESTY_FILE").map_or_else(|| truths(&set), |f| rows::read(f.as_ref()));
-    let outcomes = check::run(&rows, &check::TOLERANCES);
-    let lines = check::lines(&rows, &outcomes);
-    check::print(&lines);
-    println!("{}", check::worst(&rows, &outcomes, 3));
+fn worst(rows: &[Row], outcomes: &[check::Outcome]) -> String {
+    check::worst(&check::labels(rows), outcomes, 3, &|o| check::command(&rows[o.row], o))
 }
 
-/// The rows of a table of truths that was made elsewhere, by the rules of this one.
+/// Every row at every tolerance: prints the table, the worst values as commands, what the promise is broken by, and the
+/// medians that grew since `baseline_*.csv`.
+///
+/// `HONESTY_SET` is `test` or `calibration`, or `HONESTY_FILE` names another table of truths; `HONESTY_MODELS` picks models.
 #[test]
-#[ignore = "needs HONESTY_FILE"]
-fn other_truths_are_met() {
-    let rows = rows::read(variable("HONESTY_FILE").unwrap().as_ref());
-    for row in rows {
-        let (info, _) = brdfbake::models::find(&row.model).unwrap();
-        let params = brdfbake::models::Params::resolve(
-            info.id,
-            info.params,
-            row.params.iter().map(|(k, v)| (k.as_str(), v)),
-        )
-        .unwrap();
-        let d = draw::Draw { model: info, params, given: row.params.clone(), mu: row.mu, phi: row.phi };
-        let (e, error) = truth::albedo(&d).unwrap();
-        println!(
-            "{:30} {:.12} {:+.1e} own {:.1e}, its {:.1e}",
-            row.model,
-            e,
-            e - row.truth,
-            error,
-            row.error
-        );
+#[ignore = "long: minutes; run by `cargo long`"]
+fn estimates_are_honest_at_every_draw() {
+    let set = variable("HONESTY_SET").unwrap_or_else(|| "test".to_owned());
+    let file = variable("HONESTY_FILE");
+    let rows = file.as_ref().map_or_else(|| truths(&set), |f| rows::read(f.as_ref()));
+    let outcomes = check::run(&rows, &check::TOLERANCES);
+    let lines = check::lines(&check::labels(&rows), &outcomes);
+    check::print(&lines);
+    println!("{}", worst(&rows, &outcomes));
+    let mut broken = baseline::broken(&lines);
+    let recorded = folder().join(format!("baseline_{set}.csv"));
+    if file.is_none() && recorded.exists() {
+        broken.extend(baseline::grown(&recorded, &rows, &outcomes));
     }
+    assert!(broken.is_empty(), "{} faults:\n{}", broken.len(), broken.join("\n"));
+}
+
+/// One draw in twenty of each model: none beyond estimate and tolerance, none beyond three estimates.
+#[test]
+fn estimates_are_honest_at_a_few_draws_of_each_model() {
+    let rows: Vec<Row> =
+        truths("test").into_iter().enumerate().filter(|(i, _)| i % 20 == 7).map(|r| r.1).collect();
+    let outcomes = check::run(&rows, &check::TOLERANCES[..2]);
+    let lines = check::lines(&check::labels(&rows), &outcomes);
+    let bad: Vec<_> = lines.iter().filter(|l| l.lies > 0 || l.worst > 3.0 || l.refused > 0).collect();
+    assert!(bad.is_empty(), "{bad:#?}\n{}", worst(&rows, &outcomes));
+}
+
+/// Writes `baseline_*.csv` from the product as it is.
+#[test]
+#[ignore = "writes tests/honesty/baseline_*.csv"]
+fn record_baseline() {
+    for set in ["calibration", "test"] {
+        let rows = truths(set);
+        let outcomes = check::run(&rows, &check::TOLERANCES);
+        baseline::write(&folder().join(format!("baseline_{set}.csv")), &rows, &outcomes);
+    }
+}
+
+/// The cases of the issue: their truths were made elsewhere, by other rules.
+#[test]
+fn estimates_are_honest_at_the_cases_seen_from_outside() {
+    let text = std::fs::read_to_string(folder().join("seen.csv")).unwrap();
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let asked: Vec<f64> = reader.records().map(|r| r.unwrap()[6].parse().unwrap()).collect();
+    let rows = rows::read(&folder().join("seen.csv"));
+    let outcomes = check::run(&rows, &[1e-3, 1e-6]);
+    let bad: Vec<_> =
+        outcomes.iter().filter(|o| asked[o.row] == o.tolerance && (o.too_small() || o.refused)).collect();
+    assert!(bad.is_empty(), "{bad:#?}\n{}", worst(&rows, &outcomes));
+}
+
+/// The cases of the issue by the rules of this file.
+#[test]
+#[ignore = "long: half a minute"]
+fn truths_made_elsewhere_are_met() {
+    for row in rows::read(&folder().join("seen.csv")) {
+        let (info, _) = brdfbake::models::find(&row.model).unwrap();
+        let given = row.params.iter().map(|(k, v)| (k.as_str(), v));
+        let params = brdfbake::models::Params::resolve(info.id, info.params, given).unwrap();
+        let draw = draw::Draw { model: info, params, given: row.params.clone(), mu: row.mu, phi: row.phi };
+        let (e, error) = truth::albedo(&draw).unwrap();
+        // the table has 12 decimals
+        let slack = row.error + error + 1e-12;
+        assert!((e - row.truth).abs() <= slack, "{} {:?}: {e} for {}", row.model, row.params, row.truth);
+    }
+}
+
+#[test]
+fn truths_meet_a_known_value_of_each_table() {
+    known::check(false);
+}
+
+#[test]
+#[ignore = "long: a minute"]
+fn truths_meet_all_known_values() {
+    known::check(true);
+}
+
+/// Computes `truth_texels.csv`; rows that it holds already are kept. `HONESTY_KINDS` picks kinds, `HONESTY_DRAWS` is a percentage
+/// of the counts in `kinds.rs`.
+#[test]
+#[ignore = "long: a quarter of an hour on two cores; writes tests/honesty/truth_texels.csv"]
+fn compute_truths_of_texels() {
+    let part: u64 = variable("HONESTY_DRAWS").map_or(100, |n| n.parse().unwrap());
+    let only = variable("HONESTY_KINDS");
+    let path = folder().join("truth_texels.csv");
+    let mut known = if path.exists() { texel::read(&path) } else { Vec::new() };
+    for &(kind, count) in kinds::KINDS {
+        if only.as_deref().is_some_and(|o| !o.split(',').any(|id| id == kind)) {
+            continue;
+        }
+        let start = Instant::now();
+        let fresh: Vec<texel::Row> = (0..(count * part).div_ceil(100))
+            .into_par_iter()
+            .filter_map(|number| {
+                let texel = kinds::draw(kind, draw::TEST, number);
+                if known.iter().any(|r| r.texel == texel) {
+                    return None;
+                }
+                let truths = kinds::truths(&texel);
+                let row = texel::Row { texel, truths };
+                if row.truths.iter().any(|t| !(t.0.is_finite() && t.1.is_finite())) {
+                    eprintln!("DROPPED {:?}: {}", row.truths, texel::words(&row));
+                }
+                Some(row)
+            })
+            .collect();
+        let finite = fresh.iter().flat_map(|r| &r.truths).filter(|t| t.1.is_finite());
+        let worst = finite.fold(0.0f64, |m, t| m.max(t.1 / t.0.abs().max(1.0)));
+        println!(
+            "{kind:24} {:4} texels {:6.1} s, worst error {worst:.1e}",
+            fresh.len(),
+            start.elapsed().as_secs_f64()
+        );
+        known.extend(fresh);
+        texel::write(&path, &known);
+    }
+}
+
+/// Every texel at every tolerance, by kind and layout.
+#[test]
+#[ignore = "long: minutes; run by `cargo long`"]
+fn estimates_of_texels_are_honest() {
+    let mut rows = texel::read(&folder().join("truth_texels.csv"));
+    if let Some(only) = variable("HONESTY_KINDS") {
+        rows.retain(|r| only.split(',').any(|id| id == r.texel.kind));
+    }
+    let outcomes = texel::run(&rows, &check::TOLERANCES);
+    let labels: Vec<String> = rows.iter().map(texel::label).collect();
+    let lines = check::lines(&labels, &outcomes);
+    check::print(&lines);
+    println!("{}", check::worst(&labels, &outcomes, 3, &|o| texel::words(&rows[o.row])));
+    let broken = baseline::broken(&lines);
+    assert!(broken.is_empty(), "{} faults:\n{}", broken.len(), broken.join("\n"));
 }

@@ -94,12 +94,12 @@ pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     if values.is_empty() { 0.0 } else { values[values.len() / 2] }
 }
 
-/// By model, in the order of the rows, and tolerance.
-pub(crate) fn lines(rows: &[Row], outcomes: &[Outcome]) -> Vec<Line> {
+/// By the label of the row, in order, and tolerance.
+pub(crate) fn lines(labels: &[String], outcomes: &[Outcome]) -> Vec<Line> {
     let mut order: Vec<&str> = Vec::new();
     let mut groups: BTreeMap<(usize, usize), Vec<&Outcome>> = BTreeMap::new();
     for o in outcomes {
-        let id = rows[o.row].model.as_str();
+        let id = labels[o.row].as_str();
         let place = order.iter().position(|m| *m == id).unwrap_or_else(|| {
             order.push(id);
             order.len() - 1
@@ -163,37 +163,52 @@ pub(crate) fn print(lines: &[Line]) {
     );
 }
 
-/// The worst values, one a line, as the command that shows them.
-pub(crate) fn worst(rows: &[Row], outcomes: &[Outcome], most: usize) -> String {
+/// The worst values, one a line, `most` of each label.
+pub(crate) fn worst(
+    labels: &[String],
+    outcomes: &[Outcome],
+    most: usize,
+    words: &dyn Fn(&Outcome) -> String,
+) -> String {
     let mut bad: Vec<&Outcome> = outcomes.iter().filter(|o| o.too_small()).collect();
     bad.sort_by(|a, b| b.ratio().total_cmp(&a.ratio()));
-    let mut per_model: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     let mut text = String::new();
     for o in bad {
-        let row = &rows[o.row];
-        let count = per_model.entry(&row.model).or_default();
+        let count = counts.entry(&labels[o.row]).or_default();
         *count += 1;
         if *count > most {
             continue;
         }
-        let params: Vec<String> = row
-            .params
-            .iter()
-            .map(|(k, v)| format!("-p {k}={}", v.as_str().map_or_else(|| v.to_string(), str::to_owned)))
-            .collect();
         text.push_str(&format!(
-            "{:.1} x{}: error {:.1e}, estimate {:.1e}, truth {}: albedo {} {} --mu {:e} --phi {} -t {:e}\n",
+            "{:.1} x{}: error {:.1e}, estimate {:.1e}: {}\n",
             o.ratio(),
             if o.lies() { " LIE" } else { "" },
             o.error,
             o.estimate,
-            row.truth,
-            row.model,
-            params.join(" "),
-            row.mu,
-            row.phi,
-            o.tolerance
+            words(o)
         ));
     }
     text
+}
+
+/// Labels of rows of albedos.
+pub(crate) fn labels(rows: &[Row]) -> Vec<String> {
+    rows.iter().map(|r| r.model.clone()).collect()
+}
+
+/// The value as the command that shows it.
+pub(crate) fn command(row: &Row, o: &Outcome) -> String {
+    let params: Vec<String> = row
+        .params
+        .iter()
+        .map(|(k, v)| format!("-p {k}={}", v.as_str().map_or_else(|| v.to_string(), str::to_owned)))
+        .collect();
+    let (mu, phi, tolerance) = (row.mu, row.phi, o.tolerance);
+    format!(
+        "truth {}: albedo {} {} --mu {mu:e} --phi {phi} -t {tolerance:e}",
+        row.truth,
+        row.model,
+        params.join(" ")
+    )
 }

@@ -41,12 +41,12 @@ pub(crate) fn draw(model: &'static ModelInfo, seed: u64, number: u64) -> Draw {
 }
 
 /// Cosines: the special ones in a quarter of the draws, else spread over six decades.
-fn view(seeds: &mut Seeds) -> f64 {
+pub(crate) fn view(seeds: &mut Seeds) -> f64 {
     const SPECIAL: [f64; 4] = [0.0, 1e-154, 1e-12, 1.0];
     if seeds.index(4) == 0 { SPECIAL[seeds.index(4)] } else { libm::pow(10.0, -6.0 * seeds.unit()) }
 }
 
-fn parameters(model: &ModelInfo, seeds: &mut Seeds) -> Map<String, Value> {
+pub(crate) fn parameters(model: &ModelInfo, seeds: &mut Seeds) -> Map<String, Value> {
     let mut given = Map::new();
     // of two widths that follow a common one, half of the draws give both
     let split = seeds.index(2) == 0;

@@ -4,7 +4,7 @@
 //! rho and q = r^2 / rho^2: `mu_i (1 + r^2) = c (1 - q rho^2) + 2 s p rho = c q (end - rho)(rho + 1/(q end))`, where `end` is the horizon,
 //! and `wo.wh = (mu_i + c) sqrt(1 + r^2) / 2`: nothing cancels. Known lines are ends of pieces.
 
-use crate::quad::{Setting, Sum, sorted};
+use crate::quad::{Edge, Setting, Sum, mark, sharp, sorted};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -22,6 +22,8 @@ pub(crate) struct Pair {
     pub(crate) rho: f64,
     /// r^2 = tan^2 of the half vector.
     pub(crate) r: f64,
+    /// What the lobe has for the view alone.
+    pub(crate) view: f64,
     /// sqrt(1 + r^2)
     root: f64,
     area: f64,
@@ -69,6 +71,8 @@ pub(crate) struct Facets<'a> {
     /// Power of rho by which the integrand falls per ln rho, if it must be continued beyond 1e60.
     pub(crate) tail: f64,
     pub(crate) lines: Lines,
+    /// Handed on to every pair.
+    pub(crate) view: f64,
     /// The integrand per `drho dtau`.
     pub(crate) f: &'a (dyn Fn(&Pair) -> f64 + Sync),
 }
@@ -113,7 +117,7 @@ impl Facets<'_> {
     }
 
     /// Ends of the pieces in tau.
-    fn breaks(&self, half: bool) -> Vec<f64> {
+    fn breaks(&self, half: bool) -> Vec<Edge> {
         let [a, b] = self.along();
         let [ax, ay] = self.alpha;
         let mut all = Vec::new();
@@ -152,7 +156,9 @@ impl Facets<'_> {
         }
         if half {
             all.push(FRAC_PI_2);
-            return sorted(0.0, PI, all);
+            // the plane of incidence is one of symmetry; a singular point may lie in it
+            let plane = |at| Edge { at, sharp: self.lines.normal };
+            return sorted(plane(0.0), plane(PI), all.into_iter().map(sharp).collect());
         }
         for quarter in [0.0, FRAC_PI_2, PI, -FRAC_PI_2, -PI] {
             all.push(quarter);
@@ -160,7 +166,7 @@ impl Facets<'_> {
                 all.push(view + quarter + turn);
             }
         }
-        sorted(-PI, PI, all)
+        sorted(sharp(-PI), sharp(PI), all.into_iter().map(sharp).collect())
     }
 
     fn ray(&self, setting: &Setting, tau: f64, tolerance: f64) -> f64 {
@@ -181,7 +187,8 @@ impl Facets<'_> {
         let last = horizon.min(self.end).min(1e300);
         let open = horizon > last;
         let last = if last >= 1e300 { 1e60 } else { last };
-        let breaks = sorted(0.0, last, self.on_ray(&ray));
+        let end = Edge { at: last, sharp: !open };
+        let breaks = sorted(sharp(0.0), end, self.on_ray(&ray));
         let count = breaks.len() - 2;
         let sum = setting.pieces(&breaks, tolerance, &mut |at, _, i| {
             let left = if i == count && !open { c * q * at.to } else { reach - c * q * at.x };
@@ -193,26 +200,26 @@ impl Facets<'_> {
     }
 
     /// Ends of the pieces in rho.
-    fn on_ray(&self, ray: &Ray) -> Vec<f64> {
+    fn on_ray(&self, ray: &Ray) -> Vec<Edge> {
         let (c, s, sp, q) = (self.mu, self.sine(), ray.sp, ray.q);
-        let mut all = self.lines.rho.clone();
-        all.push(1.0);
+        let mut all: Vec<Edge> = self.lines.rho.iter().map(|rho| mark(*rho)).collect();
+        all.push(mark(1.0));
         for &line in &self.lines.cos_d {
             let roots = quadratic(sp * sp - line * line * q, c * sp, (c - line) * (c + line));
-            all.extend(roots.into_iter().filter(|rho| c + sp * rho > 0.0));
+            all.extend(roots.into_iter().filter(|rho| c + sp * rho > 0.0).map(sharp));
         }
         for &line in &self.lines.mu_i {
-            all.extend(quadratic((c + line) * q, -sp, line - c));
+            all.extend(quadratic((c + line) * q, -sp, line - c).into_iter().map(mark));
         }
         if self.lines.grooves {
-            all.extend([sp / (c * q), c / sp]);
+            all.extend([mark(sp / (c * q)), mark(c / sp)]);
             let angle = (c * q.sqrt()).atan2(sp);
-            all.extend((1..=3).map(|k| ((f64::from(k) * PI - angle) / 3.0).tan() / q.sqrt()));
+            all.extend((1..=3).map(|k| mark(((f64::from(k) * PI - angle) / 3.0).tan() / q.sqrt())));
         }
         if self.lines.normal {
-            all.push(s / (1.0 + c) / q.sqrt());
+            all.push(sharp(s / (1.0 + c) / q.sqrt()));
         }
-        all.retain(|rho| rho.is_finite() && *rho > 0.0);
+        all.retain(|edge| edge.at.is_finite() && edge.at > 0.0);
         all
     }
 
@@ -236,7 +243,7 @@ impl Facets<'_> {
         let wi = 2.0 * cos_d * wh - wo;
         let wi = DVec3::new(wi.x, wi.y, mu_i);
         let area = self.alpha[0] * self.alpha[1];
-        (self.f)(&Pair { wo, wi, wh, cos_d, mu_o: c, mu_i, rho, r, root, area })
+        (self.f)(&Pair { wo, wi, wh, cos_d, mu_o: c, mu_i, rho, r, view: self.view, root, area })
     }
 }
 

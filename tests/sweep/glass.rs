@@ -3,7 +3,7 @@
 //! `T = int P22 (1 - F) (c + s x) G2(wo, wt) / mu_o dx dy` over the facets that face wo and refract across.
 
 use crate::facets::quadratic;
-use crate::quad::{Setting, Sum, sorted};
+use crate::quad::{Edge, Setting, Sum, mark, sharp, sorted};
 use brdfbake::terms::fresnel;
 use brdfbake::terms::refraction::{self, Across};
 use brdfbake::terms::smith::Ndf;
@@ -11,18 +11,18 @@ use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// An isotropic interface seen from above.
-pub(crate) struct Interface<'a> {
+pub(crate) struct Interface {
     pub(crate) mu: f64,
     pub(crate) alpha: f64,
     pub(crate) eta: f64,
     pub(crate) across: Across,
-    pub(crate) ndf: &'a dyn Ndf,
+    pub(crate) ndf: Box<dyn Ndf>,
     /// Density of slopes in units of the width, times rho^2.
     pub(crate) density: fn(f64, f64) -> f64,
     pub(crate) end: f64,
 }
 
-impl Interface<'_> {
+impl Interface {
     fn sine(&self) -> f64 {
         ((1.0 - self.mu) * (1.0 + self.mu)).sqrt()
     }
@@ -42,7 +42,7 @@ impl Interface<'_> {
                 }
             }
         }
-        let breaks = sorted(0.0, PI, breaks);
+        let breaks = sorted(mark(0.0), mark(PI), breaks.into_iter().map(sharp).collect());
         let mut sum = setting.pieces(&breaks, tolerance, &mut |at, tolerance, _| {
             self.ray(
                 setting,
@@ -62,20 +62,21 @@ impl Interface<'_> {
         // facets that look away
         let last = if sp < 0.0 { (c / -sp).min(self.end) } else { self.end };
         let away = sp < 0.0 && c / -sp <= self.end;
-        let mut inner = vec![1.0];
+        let mut inner = vec![mark(1.0)];
         if self.eta < 1.0 {
             let line = self.critical();
             inner.extend(
                 quadratic(sp * sp - line * line * a * a, c * sp, (c - line) * (c + line))
                     .into_iter()
-                    .filter(|rho| c + sp * rho > 0.0),
+                    .filter(|rho| c + sp * rho > 0.0)
+                    .map(sharp),
             );
-            let known = sorted(0.0, last, inner.clone());
+            let known = sorted(mark(0.0), mark(last), inner.clone());
             for pair in known.windows(2) {
-                self.crossings(sp, pair[0], pair[1], &mut inner);
+                self.crossings(sp, pair[0].at, pair[1].at, &mut inner);
             }
         }
-        let breaks = sorted(0.0, last, inner);
+        let breaks = sorted(sharp(0.0), Edge { at: last, sharp: away }, inner);
         let count = breaks.len() - 2;
         setting
             .pieces(&breaks, tolerance, &mut |at, _, i| {
@@ -86,7 +87,7 @@ impl Interface<'_> {
     }
 
     /// Where the refracted direction passes the horizon.
-    fn crossings(&self, sp: f64, from: f64, to: f64, found: &mut Vec<f64>) {
+    fn crossings(&self, sp: f64, from: f64, to: f64, found: &mut Vec<Edge>) {
         let lo = if from > 0.0 { from } else { 1e-12_f64.min(0.1 * to) };
         let count = 48;
         let at = |k: u32| lo * (to.min(1e30) / lo).powf(f64::from(k) / f64::from(count));
@@ -101,7 +102,7 @@ impl Interface<'_> {
                 let middle = 0.5 * (x + y);
                 if height(middle).is_some_and(|z| (z < 0.0) == (low < 0.0)) { x = middle } else { y = middle }
             }
-            found.push(x);
+            found.push(sharp(x));
         }
     }
 
@@ -140,7 +141,7 @@ impl Interface<'_> {
             Across::Sum => mu_t / self.ndf.masked_area(wo, wt),
             Across::Beta => {
                 if self.mu > 0.0 {
-                    refraction::g2(self.across, self.ndf, wo, wt) / self.mu
+                    refraction::g2(self.across, &*self.ndf, wo, wt) / self.mu
                 } else {
                     0.0
                 }

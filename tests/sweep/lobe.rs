@@ -1,13 +1,16 @@
 //! The integrand of each half-vector lobe, with its lines: written for [`crate::facets`], from terms in closed form.
 
+use crate::draw::Draw;
 use crate::facets::{Facets, Lines, Pair};
-use crate::quad::{Setting, Sum, sorted};
+use crate::quad::{Setting, Sum, mark, sharp, sorted};
 use brdfbake::math::special::cos_pow;
 use brdfbake::models::Params;
 use brdfbake::models::microfacet::{Beckmann, Fresnel, Ggx, Masking, StudentT};
 use brdfbake::terms::smith::Ndf;
 use brdfbake::terms::{charlie, clearcoat, gtr, schlick_masking, sggx, velvet};
+use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI};
+use std::sync::Arc;
 
 /// Where `exp(-rho^2)` has no digits left that matter.
 pub(crate) const GAUSSIAN_END: f64 = 10.0;
@@ -18,17 +21,35 @@ pub(crate) struct Lobe<'a> {
     end: f64,
     tail: f64,
     lines: Lines,
+    /// What is computed once for a view.
+    view: Box<dyn Fn(DVec3) -> f64 + Sync + 'a>,
     f: Box<dyn Fn(&Pair) -> f64 + Sync + 'a>,
+}
+
+fn nothing(_: DVec3) -> f64 {
+    0.0
 }
 
 impl Lobe<'_> {
     pub(crate) fn integrate(&self, mu: f64, phi: f64, setting: &Setting, tolerance: f64) -> Sum {
         let (alpha, end, tail, lines) = (self.alpha, self.end, self.tail, self.lines.clone());
-        Facets { mu, phi, alpha, end, tail, lines, f: &*self.f }.integrate(setting, tolerance)
+        let phi = if alpha[0] == alpha[1] { 0.0 } else { phi };
+        let sin = ((1.0 - mu) * (1.0 + mu)).sqrt();
+        let view = (self.view)(DVec3::new(sin * phi.cos(), sin * phi.sin(), mu));
+        Facets { mu, phi, alpha, end, tail, lines, view, f: &*self.f }.integrate(setting, tolerance)
     }
 }
 
 impl<'a> Lobe<'a> {
+    /// The lobe times a function of wo.wh.
+    pub(crate) fn times<'b>(self, weight: impl Fn(f64) -> f64 + Sync + 'b) -> Lobe<'b>
+    where
+        'a: 'b,
+    {
+        let f = self.f;
+        Lobe { f: Box::new(move |p| weight(p.cos_d) * f(p)), ..self }
+    }
+
     /// The lobe times a function of mu_i, with the lines of that.
     pub(crate) fn weighted<'b>(self, weight: &'b (dyn Fn(f64) -> f64 + Sync), lines: Vec<f64>) -> Lobe<'b>
     where
@@ -41,6 +62,7 @@ impl<'a> Lobe<'a> {
             end: self.end,
             tail: self.tail,
             lines: all,
+            view: self.view,
             f: Box::new(move |p| weight(p.mu_i) * f(p)),
         }
     }
@@ -86,20 +108,27 @@ pub(crate) fn microfacet<'a>(
     masking: Masking,
     (factor, line): (Fresnel, Vec<f64>),
 ) -> Lobe<'a> {
-    let ndf: Box<dyn Ndf> = match base {
-        "ggx" => Box::new(Ggx::new(alpha[0], alpha[1])),
-        "beckmann" => Box::new(Beckmann::new(alpha[0], alpha[1])),
-        _ => Box::new(StudentT::new(alpha[0], alpha[1], gamma)),
+    let ndf: Arc<dyn Ndf> = match base {
+        "ggx" => Arc::new(Ggx::new(alpha[0], alpha[1])),
+        "beckmann" => Arc::new(Beckmann::new(alpha[0], alpha[1])),
+        _ => Arc::new(StudentT::new(alpha[0], alpha[1], gamma)),
     };
     let (p22, end, tail) = density(base, gamma);
+    let of_view = Arc::clone(&ndf);
     let f = move |p: &Pair| {
-        factor.at(p.cos_d)
-            * p22(p.rho, gamma)
-            * masking.visibility(&*ndf, p.wo, p.wi)
-            * p.cosines()
-            * p.slopes()
+        let v = smith(masking, [p.mu_o, p.mu_i], [p.view, ndf.mu_lambda(p.wi)]);
+        factor.at(p.cos_d) * p22(p.rho, gamma) * v * p.cosines() * p.slopes()
     };
-    Lobe { alpha, end, tail, lines: Lines { cos_d: line, ..Lines::default() }, f: Box::new(f) }
+    let view = Box::new(move |wo| of_view.mu_lambda(wo));
+    Lobe { alpha, end, tail, lines: Lines { cos_d: line, ..Lines::default() }, view, f: Box::new(f) }
+}
+
+/// `G2 / (4 mu_o mu_i)` of two cosines and their `mu Lambda`.
+fn smith(masking: Masking, [o, i]: [f64; 2], [hidden_o, hidden_i]: [f64; 2]) -> f64 {
+    match masking {
+        Masking::Correlated => 0.25 / (o * i + (o * hidden_i + i * hidden_o)),
+        Masking::Separable => 0.25 / ((o + hidden_o) * (i + hidden_i)),
+    }
 }
 
 /// Beckmann's distribution with the visibility and the lines given.
@@ -111,7 +140,7 @@ fn gaussian<'a>(
 ) -> Lobe<'a> {
     let (p22, end, tail) = density("beckmann", 0.0);
     let f = move |p: &Pair| factor.at(p.cos_d) * p22(p.rho, 0.0) * visibility(p) * p.slopes();
-    Lobe { alpha: [alpha; 2], end, tail, lines, f: Box::new(f) }
+    Lobe { alpha: [alpha; 2], end, tail, lines, view: Box::new(nothing), f: Box::new(f) }
 }
 
 /// `V mu_i (wo.wh)` of V-cavities, `V = min(1, 2 h.z mu / v) / (4 mu_o mu_i)`.
@@ -143,13 +172,13 @@ pub(crate) fn schlick_masked<'a>(alpha: f64, kind: &str, factor: Fresnel) -> Lob
         let v = schlick_masking::visibility(k, p.mu_o, p.mu_i);
         factor.at(p.cos_d) * p22(p.rho, 2.0) * v * p.cosines() * p.slopes()
     };
-    Lobe { alpha: [alpha; 2], end, tail, lines: Lines::default(), f: Box::new(f) }
+    Lobe { alpha: [alpha; 2], end, tail, lines: Lines::default(), view: Box::new(nothing), f: Box::new(f) }
 }
 
 /// A lobe with `f mu_i (wo.wh)` of its own.
 fn general<'a>(alpha: [f64; 2], lines: Lines, f: impl Fn(&Pair) -> f64 + Sync + 'a) -> Lobe<'a> {
     let f = move |p: &Pair| f(p) * p.facets();
-    Lobe { alpha, end: f64::INFINITY, tail: 0.0, lines, f: Box::new(f) }
+    Lobe { alpha, end: f64::INFINITY, tail: 0.0, lines, view: Box::new(nothing), f: Box::new(f) }
 }
 
 /// Slope width of `cos^n`.
@@ -158,7 +187,8 @@ fn width(n: f64) -> f64 {
 }
 
 fn power(p: &Pair, n: f64) -> f64 {
-    (-0.5 * n * (p.r * p.r).ln_1p()).exp()
+    let log = if p.r < 1e100 { 0.5 * (p.r * p.r).ln_1p() } else { p.r.ln() };
+    (-n * log).exp()
 }
 
 /// `scale (n.wh)^n`, over mu_i if asked.
@@ -270,18 +300,15 @@ pub(crate) fn gtr_lobe<'a>(
     gamma: f64,
     masking: Masking,
     factor: Fresnel,
-    mu_lambda: &'a (dyn Fn(f64) -> f64 + Sync),
-    mu: f64,
+    of_view: impl Fn(f64) -> f64 + Sync + 'a,
+    mu_lambda: impl Fn(f64) -> f64 + Sync + 'a,
 ) -> Lobe<'a> {
-    let o = mu_lambda(mu);
-    general([alpha; 2], Lines::default(), move |p| {
-        let i = mu_lambda(p.mu_i);
-        let v = match masking {
-            Masking::Correlated => 0.25 / (p.mu_o * p.mu_i + (p.mu_o * i + p.mu_i * o)),
-            Masking::Separable => 0.25 / ((p.mu_o + o) * (p.mu_i + i)),
-        };
+    let mut lobe = general([alpha; 2], Lines::default(), move |p| {
+        let v = smith(masking, [p.mu_o, p.mu_i], [p.view, mu_lambda(p.mu_i)]);
         factor.at(p.cos_d) * gtr::d(alpha, gamma, p.wh) * v * p.cosines()
-    })
+    });
+    lobe.view = Box::new(move |wo| of_view(wo.z));
+    lobe
 }
 
 /// `mu Lambda(mu)` of GTR: `int D(m) max(0, -w.m) dm` by azimuth: with the cosine z of m and t of the horizon of w,
@@ -293,8 +320,8 @@ pub(crate) fn gtr_mu_lambda(alpha: f64, gamma: f64, mu: f64, setting: &Setting) 
     }
     // slopes beyond cot(theta): z = 1/sqrt(1 + t^2)
     let from = mu / s;
-    let d = |t: f64| gtr::d(alpha, gamma, glam::DVec3::new(t, 0.0, 1.0) / t.hypot(1.0));
-    let breaks = sorted(from, 1e60, vec![alpha, 1.0, 2.0 * from, from + alpha]);
+    let d = |t: f64| gtr::d(alpha, gamma, DVec3::new(t, 0.0, 1.0) / t.hypot(1.0));
+    let breaks = sorted(sharp(from), mark(1e60), [alpha, 1.0, 2.0 * from, from + alpha].map(mark).to_vec());
     let peak = crate::quad::COARSE.pieces(&breaks, 0.0, &mut |at, _, _| shape(&d, s, mu, from, at.x)).value;
     setting.pieces(&breaks, 1e-14 * peak, &mut |at, _, _| shape(&d, s, mu, from, at.x)).value
 }
@@ -315,4 +342,41 @@ fn shape(d: &dyn Fn(f64) -> f64, s: f64, mu: f64, from: f64, t: f64) -> f64 {
         s * off - mu * e
     };
     2.0 * d(t) * area / root * (t / root) / (root * root)
+}
+
+/// The density of visible normals as directions that they reflect to: `D max(0, wo.wm) / (mu_o + mu_o Lambda) dwm`.
+pub(crate) fn visible<'a>(base: &str, alpha: f64) -> Lobe<'a> {
+    let ndf: Box<dyn Ndf> =
+        if base == "ggx" { Box::new(Ggx::isotropic(alpha)) } else { Box::new(Beckmann::isotropic(alpha)) };
+    let (p22, end, tail) = density(base, 2.0);
+    // f mu_i dwi = 4 V mu_i (wo.wm) D dwm: here 4 V mu_i is 1 / (mu_o + hidden)
+    let f = move |p: &Pair| p22(p.rho, 2.0) * (0.25 * p.cos_d / (p.mu_o + p.view)) * p.slopes();
+    let view = Box::new(move |wo| ndf.mu_lambda(wo));
+    Lobe { alpha: [alpha; 2], end, tail, lines: Lines::default(), view, f: Box::new(f) }
+}
+
+/// f of an isotropic facet lobe from the angle of the half vector, `wo.wh`, and both cosines.
+pub(crate) fn value(draw: &Draw, alpha: f64, [theta_h, cos_d]: [f64; 2], [o, i]: [f64; 2]) -> f64 {
+    let p = &draw.params;
+    let factor = fresnel(p).0.at(cos_d);
+    let (tan, cos) = (theta_h.tan(), theta_h.cos());
+    let rho = tan / alpha;
+    let base = if draw.model.id == "ggx" { "ggx" } else { "beckmann" };
+    let (p22, ..) = density(base, 2.0);
+    let d = p22(rho, 2.0) / (rho * rho * alpha * alpha * cos.powi(4));
+    let d = if rho > 0.0 { d } else { FRAC_1_PI / (alpha * alpha) };
+    let hidden = |mu: f64| {
+        let w = DVec3::new(((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt(), 0.0, mu);
+        if base == "ggx" {
+            Ggx::isotropic(alpha).mu_lambda(w)
+        } else {
+            Beckmann::isotropic(alpha).mu_lambda(w)
+        }
+    };
+    let v = match draw.model.id {
+        "kelemen" => 0.25 / (cos_d * cos_d),
+        "torrance-sparrow" => 0.25 * (1.0 / (o * i)).min(2.0 * cos / (cos_d * o.max(i))),
+        _ => smith(crate::truth::masking(p), [o, i], [hidden(o), hidden(i)]),
+    };
+    factor * d * v
 }

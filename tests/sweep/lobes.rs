@@ -1,6 +1,6 @@
 //! Lobes whose azimuth integrates in closed form round an axis of their own: powers of a cosine, fibres, and the plain hemisphere.
 
-use crate::quad::{Setting, Sum, sorted};
+use crate::quad::{Setting, Sum, mark, sharp, sorted};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// `cos^n` without the loss of digits that `1 - sin^2` has.
@@ -38,7 +38,11 @@ pub(crate) fn cosine(setting: &Setting, tolerance: f64, factor: f64, v: [f64; 3]
     // where the horizon begins, and the width of the lobe
     let meets = z.abs().atan2(s);
     let width = (2.0 / (n + 2.0)).sqrt();
-    let breaks = sorted(0.0, FRAC_PI_2, vec![meets, width, 3.0 * width, 6.0 * width]);
+    let breaks = sorted(
+        mark(0.0),
+        sharp(FRAC_PI_2),
+        vec![sharp(meets), mark(width), mark(3.0 * width), mark(6.0 * width)],
+    );
     let mut sum = setting.pieces(&breaks, tolerance / scale.max(1e-300), &mut |at, _, _| {
         let (sin, cos) = at.x.sin_cos();
         let power = cos_pow(at.x, n) * sin;
@@ -66,7 +70,8 @@ pub(crate) fn banks(setting: &Setting, tolerance: f64, along: f64, [kd, ks, p, q
         breaks.extend([k * wp, -k * wp, mirror + k * wq, mirror - k * wq]);
     }
     breaks.extend([mirror + FRAC_PI_2, mirror - FRAC_PI_2]);
-    let breaks = sorted(-FRAC_PI_2, FRAC_PI_2, breaks);
+    let breaks = breaks.into_iter().map(mark).collect();
+    let breaks = sorted(sharp(-FRAC_PI_2), sharp(FRAC_PI_2), breaks);
     setting.pieces(&breaks, tolerance, &mut |at, _, _| {
         let b = at.x;
         let off = (b - mirror).abs();
@@ -82,8 +87,8 @@ pub(crate) fn hemisphere(
     breaks: &[f64],
     f: &(dyn Fn(f64, f64, f64, f64) -> f64 + Sync),
 ) -> Sum {
-    let azimuths = sorted(0.0, PI, vec![FRAC_PI_2]);
-    let heights = sorted(0.0, 1.0, breaks.to_vec());
+    let azimuths = sorted(mark(0.0), mark(PI), vec![sharp(FRAC_PI_2)]);
+    let heights = sorted(sharp(0.0), sharp(1.0), breaks.iter().map(|b| sharp(*b)).collect());
     let mut sum = setting.pieces(&azimuths, tolerance, &mut |at, tolerance, _| {
         let (mut sin, mut cos) = at.x.sin_cos();
         // near the quarter the distance is exact

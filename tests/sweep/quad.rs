@@ -93,26 +93,24 @@ pub(crate) struct Setting {
 pub(crate) static COARSE: Setting =
     Setting { rule: &K15, tolerance: 0.0, relative: 1e-3, panels: 60, edges: &[0.0, 4.0, 9.0, 18.0, 36.0] };
 /// For the many values that a curve or an average takes.
-pub(crate) static MEDIUM: Setting = Setting {
-    rule: &K15,
-    tolerance: 1e-11,
-    relative: 1e-12,
-    panels: 1000,
-    edges: &[0.0, 4.0, 10.0, 20.0, 36.0],
-};
+pub(crate) static MEDIUM: Setting =
+    Setting { rule: &K15, tolerance: 1e-11, relative: 1e-12, panels: 1000, edges: &[0.0, 5.0, 14.0, 33.0] };
+/// For averages of what is itself dear.
+pub(crate) static LOOSE: Setting =
+    Setting { rule: &K15, tolerance: 1e-9, relative: 1e-10, panels: 400, edges: &[0.0, 6.0, 15.0, 33.0] };
 pub(crate) static FIRST: Setting = Setting {
     rule: &K15,
     tolerance: 1e-12,
     relative: 1e-13,
     panels: 2000,
-    edges: &[0.0, 2.9, 6.1, 10.0, 16.0, 24.0, 38.0],
+    edges: &[0.0, 3.5, 8.0, 17.0, 37.0],
 };
 pub(crate) static SECOND: Setting = Setting {
     rule: &K21,
-    tolerance: 1e-13,
-    relative: 1e-14,
+    tolerance: 2e-13,
+    relative: 2e-14,
     panels: 2000,
-    edges: &[0.0, 3.7, 8.3, 14.0, 22.0, 31.0, 42.0],
+    edges: &[0.0, 4.5, 11.0, 22.0, 41.0],
 };
 
 /// A value, and the sum of what its panels say of their errors.
@@ -196,50 +194,116 @@ pub(crate) struct At {
     pub(crate) to: f64,
 }
 
+/// The end of a piece.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Edge {
+    pub(crate) at: f64,
+    /// True if scales below any that are known may lie next to it: the variable is graded towards it.
+    pub(crate) sharp: bool,
+}
+
+/// An end towards which the variable is graded.
+pub(crate) fn sharp(at: f64) -> Edge {
+    Edge { at, sharp: true }
+}
+
+/// An end that marks a scale, or a line with smooth functions on both of its sides.
+pub(crate) fn mark(at: f64) -> Edge {
+    Edge { at, sharp: false }
+}
+
 impl Setting {
-    /// `int_a^b f`, x = a + (b - a) / (1 + e^-w). `f` is given the tolerance that the integral of its own may have.
-    pub(crate) fn graded(&self, [a, b]: [f64; 2], tolerance: f64, f: &mut dyn FnMut(At, f64) -> f64) -> Sum {
-        let length = b - a;
+    /// `int_a^b f`. `f` is given the tolerance that an integral of its own may have.
+    ///
+    /// Between sharp ends x = a + (b - a) / (1 + e^-w); next to one, the distance to it is (b - a) e^w; else x itself. A piece
+    /// of many decades takes the logarithm.
+    fn piece(&self, a: Edge, b: Edge, tolerance: f64, f: &mut dyn FnMut(At, f64) -> f64) -> Sum {
+        let length = b.at - a.at;
         if !(length > 0.0) {
             return Sum::default();
         }
-        // a piece of many decades: its first edges go on, so that the near end is seen
-        let decades = if a > 0.0 { (b / a).ln().max(0.0) } else { 0.0 };
-        let mut left: Vec<f64> = self.edges.to_vec();
-        let last = left[left.len() - 1];
-        if decades > 8.0 {
-            let mut at = last;
-            while at < last + decades {
-                at += 12.0;
-                left.push(at);
+        let decades = if a.at > 0.0 { (b.at / a.at).ln() } else { 0.0 };
+        let wide = decades > 3.0;
+        let mut call = |at: At, jacobian: f64| {
+            if jacobian > 0.0 { jacobian * f(at, 0.01 * tolerance / jacobian) } else { 0.0 }
+        };
+        match (a.sharp, b.sharp) {
+            (false, false) if wide => {
+                let count = (decades / 3.0).ceil();
+                let edges: Vec<f64> = (0..=count as usize).map(|k| decades * k as f64 / count).collect();
+                self.adaptive(&edges, tolerance, &mut |w| {
+                    let x = a.at * w.exp();
+                    call(At { x, from: x - a.at, to: b.at - x }, x)
+                })
+            }
+            (false, false) => self.adaptive(&[0.0, 1.0], tolerance, &mut |t| {
+                let x = a.at + length * t;
+                call(At { x, from: length * t, to: length * (1.0 - t) }, length)
+            }),
+            (true, false) => self.adaptive(&self.down(decades), tolerance, &mut |w| {
+                let from = length * w.exp();
+                call(At { x: a.at + from, from, to: -length * w.exp_m1() }, from)
+            }),
+            (false, true) if !wide => self.adaptive(&self.down(0.0), tolerance, &mut |w| {
+                let to = length * w.exp();
+                call(At { x: b.at - to, from: -length * w.exp_m1(), to }, to)
+            }),
+            _ => {
+                // next to a mark the scale is that of the mark
+                let left = if a.sharp {
+                    self.down(decades)
+                } else {
+                    vec![-decades - 4.0, -decades, -0.5 * decades, 0.0]
+                };
+                let right = self.down(0.0);
+                let edges: Vec<f64> =
+                    left.into_iter().chain(right.iter().rev().skip(1).map(|w| -w)).collect();
+                let rest = if a.sharp { 0.0 } else { (edges[0]).exp() };
+                let scale = length;
+                let main = self.adaptive(&edges, tolerance, &mut |w| {
+                    let e = (-w.abs()).exp();
+                    let (near, far) = (e / (1.0 + e), 1.0 / (1.0 + e));
+                    let (from, to) =
+                        if w < 0.0 { (scale * near, scale * far) } else { (scale * far, scale * near) };
+                    let x = if w < 0.0 { a.at + from } else { b.at - to };
+                    call(At { x, from, to }, scale * near * far)
+                });
+                if rest <= 0.0 {
+                    return main;
+                }
+                // the short end that the left edges leave out
+                let short = length * (rest / (1.0 + rest));
+                let end = self.adaptive(&[0.0, 1.0], tolerance, &mut |t| {
+                    let from = short * t;
+                    call(At { x: a.at + from, from, to: length - from }, short)
+                });
+                Sum { value: main.value + end.value, error: main.error + end.error }
             }
         }
-        let mut edges: Vec<f64> = left.iter().rev().map(|e| -e).collect();
-        edges.extend_from_slice(&self.edges[1..]);
-        self.adaptive(&edges, tolerance, &mut |w| {
-            let e = (-w.abs()).exp();
-            let (near, far) = (e / (1.0 + e), 1.0 / (1.0 + e));
-            let (from, to) =
-                if w < 0.0 { (length * near, length * far) } else { (length * far, length * near) };
-            let x = if w < 0.0 { a + from } else { b - to };
-            let jacobian = length * near * far;
-            if jacobian <= 0.0 {
-                return 0.0;
-            }
-            jacobian * f(At { x, from, to }, 0.01 * tolerance / jacobian)
-        })
     }
 
-    /// The sum over the pieces between sorted breaks.
+    /// First edges of ln(distance / length), from far below to 0; more of them for a piece of many decades.
+    fn down(&self, decades: f64) -> Vec<f64> {
+        let mut edges: Vec<f64> = self.edges.to_vec();
+        let last = edges[edges.len() - 1];
+        let mut at = last;
+        while decades > 8.0 && at < last + decades {
+            at += 12.0;
+            edges.push(at);
+        }
+        edges.iter().rev().map(|e| -e).collect()
+    }
+
+    /// The sum over the pieces between sorted edges.
     pub(crate) fn pieces(
         &self,
-        breaks: &[f64],
+        edges: &[Edge],
         tolerance: f64,
         f: &mut dyn FnMut(At, f64, usize) -> f64,
     ) -> Sum {
         let mut total = Sum::default();
-        for (i, pair) in breaks.windows(2).enumerate() {
-            let part = self.graded([pair[0], pair[1]], tolerance, &mut |at, tolerance| f(at, tolerance, i));
+        for (i, pair) in edges.windows(2).enumerate() {
+            let part = self.piece(pair[0], pair[1], tolerance, &mut |at, tolerance| f(at, tolerance, i));
             total.value += part.value;
             total.error += part.error;
         }
@@ -247,20 +311,26 @@ impl Setting {
     }
 }
 
-/// Breaks inside (a, b), with both ends, in order, without those that are one but for rounding.
-pub(crate) fn sorted(a: f64, b: f64, mut breaks: Vec<f64>) -> Vec<f64> {
-    breaks.retain(|x| *x > a && *x < b);
-    breaks.sort_by(f64::total_cmp);
+/// Edges inside (a, b), with both ends, in order; of those that are one but for rounding the sharp one is kept.
+pub(crate) fn sorted(a: Edge, b: Edge, mut inner: Vec<Edge>) -> Vec<Edge> {
+    inner.retain(|e| e.at > a.at && e.at < b.at);
+    inner.push(b);
+    inner.sort_by(|x, y| x.at.total_cmp(&y.at));
     let mut all = vec![a];
-    for x in breaks {
-        if x - all[all.len() - 1] > 4e-16 * x.abs() {
-            all.push(x);
+    for edge in inner {
+        let last = all.len() - 1;
+        if edge.at - all[last].at > 4e-16 * edge.at.abs() {
+            all.push(edge);
+        } else {
+            all[last].sharp |= edge.sharp;
+            if last > 0 {
+                all[last].at = edge.at;
+            }
         }
     }
-    if b - all[all.len() - 1] <= 4e-16 * b.abs() && all.len() > 1 {
-        all.pop();
+    if all.len() == 1 {
+        all.push(b);
     }
-    all.push(b);
     all
 }
 

@@ -1,11 +1,11 @@
 //! The truth of a draw: which rule integrates which model.
 
-use crate::curve::Curve;
+use crate::curve::{Curve, split};
 use crate::draw::Draw;
 use crate::glass::Interface;
 use crate::lobe::{self, Lobe};
 use crate::lobes::{self, Over};
-use crate::quad::{self, Setting, Sum, two_settings};
+use crate::quad::{self, Setting, Sum, mark, sharp, two_settings};
 use brdfbake::models::microfacet::{Beckmann, Fresnel, Ggx, Masking};
 use brdfbake::models::{Brdf, Params};
 use brdfbake::terms::refraction::Across;
@@ -47,7 +47,8 @@ pub(crate) fn albedo(draw: &Draw) -> Truth {
                 return Err(INFINITE);
             }
             let scale = 2.0 * number("rho") * mu.powf(k - 1.0);
-            let (v, e) = two_settings(|s, t| s.pieces(&[0.0, 1.0], t, &mut |at, _, _| at.x.powf(k)));
+            let (v, e) =
+                two_settings(|s, t| s.pieces(&[sharp(0.0), mark(1.0)], t, &mut |at, _, _| at.x.powf(k)));
             Ok((scale * v, scale * e))
         }
         "phong" => {
@@ -92,9 +93,6 @@ pub(crate) fn albedo(draw: &Draw) -> Truth {
             let e = two_settings(|s, t| lobes::cosine(s, t, number("rho_s"), v, number("n"), Over::Nothing));
             plus(number("rho_d"), 1.0, Ok(e))
         }
-        "ashikhmin-shirley-specular" => {
-            lobe(lobe::ashikhmin_shirley(number("rs"), number("nu"), number("nv"), mu))
-        }
         "ashikhmin-shirley" => {
             let gloss = lobe(lobe::ashikhmin_shirley(number("rs"), number("nu"), number("nv"), mu));
             let x = 0.5 * mu;
@@ -105,6 +103,28 @@ pub(crate) fn albedo(draw: &Draw) -> Truth {
             let all = [number("kd"), number("ks"), number("p"), number("q")];
             Ok(two_settings(|s, t| lobes::banks(s, t, wo[0], all)))
         }
+        "cook-torrance-1982" if number("alpha") <= 0.0 => Err("alpha = 0 has no definition"),
+        "kelemen-matte" => {
+            let (e, error) = lobe(lobe::kelemen(number("alpha"), schlick_of(p), 1.0))?;
+            Ok((e + number("rho") * (1.0 - e), error))
+        }
+        "kulla-conty" | "turquin" | "fdez-aguera" => Ok(crate::curve::compensated(draw)),
+        "gltf" => Ok(crate::curve::gltf(draw)),
+        _ => match half_vector(draw) {
+            Some((all, slack)) => lobe(all).map(|(e, error)| (e, error + slack * e)),
+            None => Err("no independent rule for this model"),
+        },
+    }
+}
+
+/// The lobe of a model that is one half-vector lobe, and the relative error of what it is made of.
+pub(crate) fn half_vector(draw: &Draw) -> Option<(Lobe<'static>, f64)> {
+    let p = &draw.params;
+    let number = |id: &str| p.number(id);
+    let lobe = match draw.model.id {
+        "ashikhmin-shirley-specular" => {
+            lobe::ashikhmin_shirley(number("rs"), number("nu"), number("nv"), draw.mu)
+        }
         "ggx"
         | "ggx-conductor"
         | "ggx-dielectric"
@@ -113,51 +133,52 @@ pub(crate) fn albedo(draw: &Draw) -> Truth {
         | "beckmann-dielectric"
         | "student-t"
         | "ggx-glass"
-        | "beckmann-glass" => lobe(smith(draw)),
-        "gtr" => Ok(gtr(draw)),
-        "torrance-sparrow" => lobe(lobe::torrance_sparrow(number("alpha"), schlick_of(p), 1.0)),
-        "cook-torrance-1982" => {
-            if number("alpha") <= 0.0 {
-                return Err("alpha = 0 has no definition");
-            }
-            lobe(lobe::torrance_sparrow(number("alpha"), schlick_of(p), 4.0))
-        }
-        "blinn-phong-microfacet" => lobe(lobe::blinn_microfacet(number("n"), schlick_of(p))),
-        "ggx-schlick-masking" => lobe(lobe::schlick_masked(number("alpha"), p.choice("k"), schlick_of(p))),
-        "kelemen" => lobe(lobe::kelemen(number("alpha"), schlick_of(p), 1.0)),
+        | "beckmann-glass" => smith(draw),
+        "gtr" => return Some(gtr(draw)),
+        "torrance-sparrow" => lobe::torrance_sparrow(number("alpha"), schlick_of(p), 1.0),
+        "cook-torrance-1982" => lobe::torrance_sparrow(number("alpha"), schlick_of(p), 4.0),
+        "blinn-phong-microfacet" => lobe::blinn_microfacet(number("n"), schlick_of(p)),
+        "ggx-schlick-masking" => lobe::schlick_masked(number("alpha"), p.choice("k"), schlick_of(p)),
+        "kelemen" => lobe::kelemen(number("alpha"), schlick_of(p), 1.0),
         "kelemen-skin" => {
             let unit = if p.choice("units") == "punctual" { PI } else { 1.0 };
             let factor = Fresnel::Schlick { f0: number("f0"), f90: 1.0 };
-            lobe(lobe::kelemen(number("m"), factor, unit * number("rho_s")))
+            lobe::kelemen(number("m"), factor, unit * number("rho_s"))
         }
-        "kelemen-matte" => {
-            let (e, error) = lobe(lobe::kelemen(number("alpha"), schlick_of(p), 1.0))?;
-            Ok((e + number("rho") * (1.0 - e), error))
-        }
-        "disney-clearcoat" => lobe(lobe::coat(number("gloss"), number("clearcoat"))),
-        "charlie" => lobe(lobe::charlie(number("roughness"))),
-        "charlie-neubelt" => lobe(lobe::charlie_neubelt(number("roughness"))),
-        "velvet-ashikhmin" => lobe(lobe::velvet_ashikhmin(number("sigma"))),
-        "velvet-neubelt" => lobe(lobe::velvet_neubelt(number("alpha"), schlick_of(p))),
-        "sggx-fiber" => lobe(lobe::fibres(number("sigma"))),
-        "kulla-conty" | "turquin" | "fdez-aguera" => Ok(crate::curve::compensated(draw)),
-        "gltf" => Ok(crate::curve::gltf(draw)),
-        _ => Err("no independent rule for this model"),
-    }
+        "disney-clearcoat" => lobe::coat(number("gloss"), number("clearcoat")),
+        "charlie" => lobe::charlie(number("roughness")),
+        "charlie-neubelt" => lobe::charlie_neubelt(number("roughness")),
+        "velvet-ashikhmin" => lobe::velvet_ashikhmin(number("sigma")),
+        "velvet-neubelt" => lobe::velvet_neubelt(number("alpha"), schlick_of(p)),
+        "sggx-fiber" => lobe::fibres(number("sigma")),
+        _ => return None,
+    };
+    Some((lobe, 0.0))
 }
 
-/// T of a draw: the part that crosses.
+/// T of a draw: the part that crosses; none for models that do not transmit, and interfaces of two widths.
 pub(crate) fn transmitted(draw: &Draw) -> Option<Truth> {
-    let (p, mu) = (&draw.params, draw.mu);
-    let eta = p.number("eta");
-    let id = draw.model.id;
-    if !id.ends_with("-glass") {
+    if !draw.model.id.ends_with("-glass") {
         return None;
     }
-    if draw.flat() || id == "smooth-glass" {
-        let t = fresnel::dielectric_transmittance(mu, eta).unpolarised();
+    if let Some(t) = smooth(draw) {
         return Some(Ok((t, 2e-16 * t)));
     }
+    interface(draw).map(|i| Ok(two_settings(|s, t| i.integrate(s, t))))
+}
+
+/// T by one setting, for averages.
+pub(crate) fn transmitted_once(draw: &Draw, setting: &Setting, tolerance: f64) -> f64 {
+    smooth(draw).unwrap_or_else(|| interface(draw).map_or(0.0, |i| i.integrate(setting, tolerance).value))
+}
+
+fn smooth(draw: &Draw) -> Option<f64> {
+    let eta = draw.params.number("eta");
+    draw.flat().then(|| fresnel::dielectric_transmittance(draw.mu, eta).unpolarised())
+}
+
+fn interface(draw: &Draw) -> Option<Interface> {
+    let p = &draw.params;
     let alpha = p.number("alpha_x");
     if alpha != p.number("alpha_y") {
         return None;
@@ -167,15 +188,11 @@ pub(crate) fn transmitted(draw: &Draw) -> Option<Truth> {
         "beta" => Across::Beta,
         _ => Across::Sum,
     };
-    let ndf: Box<dyn Ndf> = if id == "ggx-glass" {
-        Box::new(Ggx::isotropic(alpha))
-    } else {
-        Box::new(Beckmann::isotropic(alpha))
-    };
-    let (density, end, _) = lobe::density(if id == "ggx-glass" { "ggx" } else { "beckmann" }, 2.0);
-    let end = end.min(1e40);
-    let interface = Interface { mu, alpha, eta, across, ndf: &*ndf, density, end };
-    Some(Ok(two_settings(|s, t| interface.integrate(s, t))))
+    let ggx = draw.model.id == "ggx-glass";
+    let ndf: Box<dyn Ndf> =
+        if ggx { Box::new(Ggx::isotropic(alpha)) } else { Box::new(Beckmann::isotropic(alpha)) };
+    let (density, end, _) = lobe::density(if ggx { "ggx" } else { "beckmann" }, 2.0);
+    Some(Interface { mu: draw.mu, alpha, eta: p.number("eta"), across, ndf, density, end: end.min(1e40) })
 }
 
 /// A constant and a scaled lobe.
@@ -224,14 +241,13 @@ fn diffuse(draw: &Draw) -> (f64, f64) {
 }
 
 /// GTR: the masking is a curve of its own rule.
-fn gtr(draw: &Draw) -> (f64, f64) {
+fn gtr(draw: &Draw) -> (Lobe<'static>, f64) {
     let p = &draw.params;
     let (alpha, gamma) = (p.number("alpha"), p.number("gamma"));
-    let curve = Curve::new(&|mu| lobe::gtr_mu_lambda(alpha, gamma, mu, &quad::SECOND));
-    let at = |mu: f64| curve.at(mu);
-    let lobe = lobe::gtr_lobe(alpha, gamma, masking(p), schlick_of(p), &at, draw.mu);
-    let (e, error) = two_settings(|s, t| lobe.integrate(draw.mu, draw.phi, s, t));
-    (e, error + curve.error() * e)
+    let exact = move |mu: f64| lobe::gtr_mu_lambda(alpha, gamma, mu, &quad::SECOND);
+    let curve = Curve::new(split(&[-34.0, 34.0], 2.0), 24, &exact);
+    let error = curve.error();
+    (lobe::gtr_lobe(alpha, gamma, masking(p), schlick_of(p), exact, move |mu| curve.at(mu)), error)
 }
 
 impl Draw {
