@@ -13,6 +13,8 @@ mod curve;
 mod draw;
 #[path = "sweep/facets.rs"]
 mod facets;
+#[path = "sweep/fits.rs"]
+mod fits;
 #[path = "sweep/glass.rs"]
 mod glass;
 #[path = "sweep/kinds.rs"]
@@ -290,6 +292,18 @@ fn estimates_of_texels_are_honest() {
     let lines = check::lines(&labels, &outcomes);
     check::print(&lines);
     println!("{}", check::worst(&labels, &outcomes, 3, &|o| texel::words(&rows[o.row])));
+    let broken = baseline::broken(&lines);
+    assert!(broken.is_empty(), "{} faults:\n{}", broken.len(), broken.join("\n"));
+}
+
+/// Residuals of fits, integrated for the parameters that the product found.
+#[test]
+#[ignore = "long: minutes; run by `cargo long`"]
+fn residuals_of_fits_are_honest() {
+    let (labels, outcomes) = fits::run(draw::TEST, 40);
+    let lines = check::lines(&labels, &outcomes);
+    check::print(&lines);
+    println!("{}", check::worst(&labels, &outcomes, 3, &|o| labels[o.row].clone()));
     let broken = baseline::broken(&lines);
     assert!(broken.is_empty(), "{} faults:\n{}", broken.len(), broken.join("\n"));
 }
