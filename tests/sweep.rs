@@ -1,5 +1,14 @@
 //! Albedos of every model at seeded draws of the ranges that its parameters declare, against an independent rule.
-#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, clippy::float_cmp, reason = "test")]
+#![allow(
+    clippy::all,
+    clippy::cast_possible_truncation,
+    clippy::disallowed_methods,
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    clippy::float_cmp,
+    reason = "test"
+)]
 
 #[path = "sweep/baseline.rs"]
 mod baseline;
