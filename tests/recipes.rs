@@ -7,6 +7,8 @@ mod bad;
 mod canonical;
 #[path = "recipes/fuzz.rs"]
 mod fuzz;
+#[path = "recipes/names.rs"]
+mod names;
 #[path = "recipes/presets.rs"]
 mod presets;
 #[path = "recipes/requests.rs"]

@@ -4,11 +4,11 @@
 use super::{Exit, Failure, engine, output};
 use crate::encode::{self, Encoder};
 use crate::functions::{self, FunctionInfo};
-use crate::grid::Quantity;
+use crate::grid::{Axis, Quantity};
 use crate::math::figures::exact;
 use crate::models::{self, Kind, ModelInfo, Param, Preset};
 use crate::recipe::{self, ENGINES, PRESETS};
-use crate::tables::{self, ModelUse, TableInfo, source};
+use crate::tables::{self, Layout, ModelUse, Selection, Setting, TableInfo, source};
 use crate::verify;
 
 /// Arguments of `describe`.
@@ -137,20 +137,43 @@ pub fn table(t: &TableInfo) -> String {
     if !t.coordinates.is_empty() {
         text.push_str(&format!("needs axes for: {}\n", t.coordinates.join(", ")));
     }
-    text.push_str("default axes:\n");
-    for axis in (t.axes)() {
-        text.push_str(&format!(
-            "  {} in {}, {} texels, {:?}, texture coordinate {}\n",
-            axis.quantity.id,
-            interval(axis.domain),
-            axis.len,
-            axis.texel,
-            axis.coordinate_formula()
-        ));
-    }
+    text.push_str(&default_axes(t));
     text.push_str(&params(t.params));
     text.push_str(&format!("laws checked: {}\nnotes: {}\n", t.laws.join(", "), t.notes));
     text.push_str(&sources(&source::all(t)));
+    text
+}
+
+/// The axes of each layout, those of the first one for all that share them.
+fn default_axes(t: &TableInfo) -> String {
+    let model = match t.model {
+        ModelUse::None => None,
+        ModelUse::Any(id) | ModelUse::Split(id) => models::find(id).map(|(info, _)| info),
+    };
+    let lines = |layout: &Layout| -> String {
+        let layout = Selection::from(layout);
+        let axes = t.default_axes(Setting { layout: &layout, model });
+        let line = |axis: &Axis| {
+            let clamp = axis.clamp.map_or_else(String::new, |c| format!(", clamped to {}", interval(c)));
+            format!(
+                "  {} in {}{clamp}, {} texels, {:?}, texture coordinate {}\n",
+                axis.quantity.id,
+                interval(axis.domain),
+                axis.len,
+                axis.texel,
+                axis.coordinate_formula()
+            )
+        };
+        axes.iter().map(line).collect()
+    };
+    let first = t.layouts.first().map(lines).unwrap_or_default();
+    let mut text = format!("default axes:\n{first}");
+    for layout in t.layouts.iter().skip(1) {
+        let own = lines(layout);
+        if own != first {
+            text.push_str(&format!("default axes of layout {}:\n{own}", layout.id));
+        }
+    }
     text
 }
 

@@ -222,6 +222,16 @@ fn line(event: &Event<'_>) -> Option<String> {
                 text.push_str(&format!(", {missed} texels above the tolerance"));
             }
             text.push_str(&format!(" [{:.0} ms + {:.0} ms]", bake_seconds * 1e3, check_seconds * 1e3));
+            // the same for every output, as a rule: said once
+            if let Some(r) = reconstruction.iter().find(|r| !r.advice.is_empty()) {
+                text.push_str(&format!(
+                    "\n    a reader is {:.0} times further off than the tolerance; better:",
+                    r.whole / tolerance
+                ));
+                for advice in &r.advice {
+                    text.push_str(&format!("\n    * {advice}"));
+                }
+            }
             text
         }
         Event::Finding { table, finding } => format!("  warning: {table}: {finding}"),

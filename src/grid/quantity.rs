@@ -92,6 +92,13 @@ pub static QUANTITIES: &[Quantity] = &[
         Base { id: "alpha", formula: "alpha = roughness^2", to: |r| r * r, from: f64::sqrt },
     ),
     derived(
+        "sheen_roughness",
+        "r",
+        "roughness of a sheen, as glTF has it",
+        [0.0, 1.0],
+        Base { id: "alpha", formula: "alpha = sheen_roughness^2", to: |r| r * r, from: f64::sqrt },
+    ),
+    derived(
         "theta",
         "theta_o",
         "view angle to the normal, in radians",
@@ -136,6 +143,13 @@ pub static QUANTITIES: &[Quantity] = &[
     ),
 ];
 
+/// Quantities that some models take as they are, although elsewhere they have a base: `roughness` of a model that has a parameter
+/// of that name is that parameter.
+static OWN: &[Quantity] = &[
+    base("roughness", "r", "1", "roughness, as its model takes it", [0.0, 1.0]),
+    base("sheen_roughness", "r", "1", "roughness of the sheen, as its model takes it", [0.0, 1.0]),
+];
+
 const fn base(
     id: &'static str,
     symbol: &'static str,
@@ -161,6 +175,20 @@ impl Quantity {
     #[must_use]
     pub fn find(id: &str) -> Option<&'static Quantity> {
         QUANTITIES.iter().find(|q| q.id == id)
+    }
+
+    /// The quantity of this id without a base, for a model that takes it as it is. Read back from a file it is the one with a
+    /// base again: the map is then in the file's words.
+    #[must_use]
+    pub fn own(id: &str) -> Option<&'static Quantity> {
+        OWN.iter().find(|q| q.id == id)
+    }
+
+    /// The interval of this quantity whose base values are those from `lo` to `hi`.
+    #[must_use]
+    pub fn interval_from_base(&self, [lo, hi]: [f64; 2]) -> [f64; 2] {
+        let [a, b] = [self.from_base(lo), self.from_base(hi)];
+        [a.min(b), a.max(b)]
     }
 
     /// The id that formulas use: the base's, or its own.
@@ -190,7 +218,7 @@ impl Quantity {
 
 impl PartialEq for Quantity {
     fn eq(&self, other: &Self) -> bool {
-        self.id == other.id
+        self.id == other.id && self.base_id() == other.base_id()
     }
 }
 

@@ -50,7 +50,11 @@ pub static INFO: ModelInfo = ModelInfo {
 
 /// `nu`.
 pub(super) const NU: Param =
-    Param::number("nu", "nu", "exponent along the tangent", [0.0, 1e7], Preset::Value(100.0));
+    Param::number("nu", "nu", "exponent along the tangent", [0.0, 1e7], Preset::Value(100.0)).swept(
+        "nu",
+        [1.0, 1000.0],
+        0.25,
+    );
 /// `nv`.
 pub(super) const NV: Param =
     Param::number("nv", "nv", "exponent along the bitangent", [0.0, 1e7], Preset::Of("nu"));

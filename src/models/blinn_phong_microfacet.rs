@@ -28,7 +28,8 @@ pub static INFO: ModelInfo = ModelInfo {
             "exponent of the cosine; alpha^2 = 2 / (n + 2)",
             [0.0, 1e7],
             Preset::Value(64.0),
-        ),
+        )
+        .swept("n", [1.0, 1000.0], 0.25),
         F0,
         F90,
     ],

@@ -11,11 +11,12 @@ use crate::math::frame;
 use crate::terms::charlie;
 use glam::DVec3;
 
-/// `roughness` of both Charlies.
+/// `roughness` of both Charlies: the r of the paper, a width like alpha. As an axis the word means the same; the roughness of a
+/// glTF sheen, its square root, is `sheen_roughness`.
 pub(super) const ROUGHNESS: Param = Param::number(
     "roughness",
     "r",
-    "roughness of the cloth; the exponent of the sine is 1 / r",
+    "r of the cloth; the exponent of the sine is 1 / r; r = sheen_roughness^2",
     [0.01, 1.0],
     Preset::Value(0.5),
 )
@@ -30,7 +31,7 @@ pub static INFO: ModelInfo = ModelInfo {
     title: "Charlie sheen, fitted masking",
     formula: "f = D(wh) / (4 mu_o mu_i (1 + Lambda(mu_o) + Lambda(mu_i))), D = (2 + 1/r) sin^(1/r) / (2 pi)",
     sources: &[(cite::ESTEVEZ_KULLA_2017, "Eq. 2 (D), 3 (Lambda)")],
-    params: &[ROUGHNESS],
+    params: &[ROUGHNESS.swept("roughness", [0.073, 1.0], 1.0)],
     laws: Laws { reciprocal: true, passive: false, isotropic: true },
     notes: "Without the softened terminator of Eq. 4, which is not reciprocal. E stays below 1 for roughness >= 0.07 (the clamp of \
         productions) and mu >= 1e-5, and above it elsewhere: the fitted Lambda is finite at the horizon, so f would grow as 1 / mu; \

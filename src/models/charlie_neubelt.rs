@@ -19,7 +19,7 @@ pub static INFO: ModelInfo = ModelInfo {
         (cite::ESTEVEZ_KULLA_2017, "Eq. 2 (D)"),
         (cite::NEUBELT_PETTINEO_2013, "the visibility of cloth"),
     ],
-    params: &[ROUGHNESS],
+    params: &[ROUGHNESS.swept("roughness", [0.25, 1.0], 1.0)],
     laws: Laws { reciprocal: true, passive: false, isotropic: true },
     notes: "Not passive: E reaches 1.56 at grazing for roughness 0.07. Renderers scale the base by 1 - E, clamped.",
     also: &[Alias { name: "charlie_neubelt_visibility", set: &[] }],

@@ -25,7 +25,8 @@ pub static INFO: ModelInfo = ModelInfo {
             "0 is alpha = 0.1, 1 is alpha = 0.001",
             [0.0, 1.0],
             Preset::Value(1.0),
-        ),
+        )
+        .swept("gloss", [0.0, 1.0], 1.0),
     ],
     laws: Laws { reciprocal: true, passive: true, isotropic: true },
     notes: "g holds the 1 / (2 mu) of both sides. Its masking has a width of its own, so this is no microfacet model; E stays below \

@@ -58,7 +58,8 @@ pub static INFO: ModelInfo = ModelInfo {
 /// `r`, the artist's roughness of diffuse models.
 pub(super) const R: Param =
     Param::number("r", "r", "artist's roughness; 0 is Lambert", [0.0, 1.0], Preset::Value(0.5))
-        .also(&["roughness"]);
+        .also(&["roughness"])
+        .swept("r", [0.0, 1.0], 1.0);
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     Ok(Box::new(Diffuse(Fujii { rho: params.number("rho"), fon: Fon::new(params.number("r")) })))

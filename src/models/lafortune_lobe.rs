@@ -24,7 +24,7 @@ pub static INFO: ModelInfo = ModelInfo {
         coefficient("cx", -1.0).also(&["Cx"]),
         coefficient("cy", -1.0).also(&["Cy"]),
         coefficient("cz", 1.0).also(&["Cz"]),
-        Param::number("n", "n", "exponent", [0.0, 1e7], Preset::Value(20.0)),
+        Param::number("n", "n", "exponent", [0.0, 1e7], Preset::Value(20.0)).swept("n", [1.0, 1000.0], 0.25),
     ],
     laws: Laws { reciprocal: true, passive: false, isotropic: false },
     notes: "Passive only if the parameters make it so: the lobe has E <= rho_s |C wo|^n 2 pi / (n + 2), with equality where C wo is along the normal. \

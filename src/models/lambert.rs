@@ -15,7 +15,11 @@ pub static INFO: ModelInfo = ModelInfo {
     title: "Lambert",
     formula: "f = rho / pi",
     sources: &[(cite::LAMBERT_1760, "Pars prima, cap. II")],
-    params: &[Param::number("rho", "rho", "diffuse reflectance", [0.0, 1.0], Preset::Value(1.0))],
+    params: &[Param::number("rho", "rho", "diffuse reflectance", [0.0, 1.0], Preset::Value(1.0)).swept(
+        "rho",
+        [0.0, 1.0],
+        1.0,
+    )],
     laws: Laws { reciprocal: true, passive: true, isotropic: true },
     notes: "E = E_avg = rho for every angle.",
     also: &[],

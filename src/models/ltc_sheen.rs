@@ -21,7 +21,8 @@ pub static INFO: ModelInfo = ModelInfo {
         (cite::HEITZ_2016, "Eq. 1"),
     ],
     params: &[Param::number("roughness", "r", "roughness of the fibres", [0.01, 1.0], Preset::Value(0.5))
-        .also(&["r"])],
+        .also(&["r"])
+        .swept("roughness", [0.03, 1.0], 1.0)],
     laws: Laws { reciprocal: false, passive: true, isotropic: true },
     notes: "Not reciprocal (asymmetry up to 27 %). The fit of R dips to -2e-5 near roughness 0.1 and is clamped to 0 here; \
         the function `ltc-sheen-fit` does not clamp. E = R exactly.",

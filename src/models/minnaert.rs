@@ -20,7 +20,11 @@ pub static INFO: ModelInfo = ModelInfo {
     sources: &[(cite::MINNAERT_1941, "the reciprocal law of limb darkening (equation number not verified)")],
     params: &[
         Param::number("rho", "rho", "reflectance at k = 1", [0.0, 1.0], Preset::Value(1.0)),
-        Param::number("k", "k", "limb darkening exponent", [0.0, 10.0], Preset::Value(1.5)),
+        Param::number("k", "k", "limb darkening exponent", [0.0, 10.0], Preset::Value(1.5)).swept(
+            "k",
+            [1.0, 4.0],
+            1.0,
+        ),
     ],
     laws: Laws { reciprocal: true, passive: false, isotropic: true },
     notes: "E = 2 rho mu^(k-1) / (k + 1): not passive for k < 1, where it is infinite at mu = 0; start the mu axis above 0 there.",

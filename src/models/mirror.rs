@@ -17,7 +17,7 @@ pub static INFO: ModelInfo = ModelInfo {
         (cite::BORN_WOLF_1999, "section 1.5.1 (the law of reflection)"),
         (cite::SCHLICK_1994, "Eq. 15 (F)"),
     ],
-    params: &[F0, F90],
+    params: &[F0.swept("f0", [0.0, 1.0], 1.0), F90],
     laws: Laws { reciprocal: true, passive: true, isotropic: true },
     notes: "A delta is never tabulated: E(mu) = F(mu). It is the limit of every microfacet model as alpha -> 0, though not a uniform one.",
     also: &[],

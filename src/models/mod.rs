@@ -74,7 +74,7 @@ use crate::cite::Cite;
 use crate::integrate::{BATCH, Chart, Estimate, Nodes};
 pub use functional::Functional;
 use glam::{DVec2, DVec3};
-pub use param::{Column, Kind, Param, ParamError, Params, Preset, Value};
+pub use param::{Column, Kind, Param, ParamError, Params, Preset, Sweep, Value};
 use std::fmt::Debug;
 
 /// Every model, in the order of `list models`.
@@ -323,6 +323,12 @@ impl ModelInfo {
     #[must_use]
     pub fn param(&self, name: &str) -> Option<&'static Param> {
         self.params.iter().find(|p| p.is_called(name))
+    }
+
+    /// The number that an axis of this base quantity runs over.
+    #[must_use]
+    pub fn measured(&self, base: &str) -> Option<&'static Param> {
+        self.params.iter().find(|p| p.range().is_some() && p.is_measured_by(base))
     }
 
     /// Parameters whose default is the value of another one.

@@ -66,6 +66,7 @@ pub(super) const SIGMA: Param = Param {
         [0.0, 1.57],
         Preset::Value(0.35),
     )
+    .swept("sigma", [0.0, 1.57], 1.0)
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {

@@ -16,8 +16,23 @@ pub struct Param {
     pub doc: &'static str,
     /// Other spellings that are accepted.
     pub also: &'static [&'static str],
+    /// More of them, for values alone: words that measure something else on an axis.
+    pub spelled: &'static [&'static str],
+    /// How an axis runs over it by default, in the place of the roughness that the model does not have.
+    pub sweep: Option<Sweep>,
     /// A number in a range, or one of a few words.
     pub kind: Kind,
+}
+
+/// The axis that default axes take for a model: its quantity, where it is worth a table, and how it is spread.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sweep {
+    /// Id of a quantity that measures the parameter.
+    pub quantity: &'static str,
+    /// Where the model is of use and keeps the laws that it claims, in that quantity.
+    pub domain: [f64; 2],
+    /// `w = v^power` of the domain normalised; 1 is an even spread.
+    pub power: f64,
 }
 
 /// What values a parameter takes.
@@ -351,6 +366,8 @@ impl Param {
             unit: "1",
             doc,
             also: &[],
+            spelled: &[],
+            sweep: None,
             kind: Kind::Number { min: range[0], max: range[1], preset },
         }
     }
@@ -358,7 +375,16 @@ impl Param {
     /// A choice parameter; the first word is the default.
     #[must_use]
     pub const fn choice(id: &'static str, doc: &'static str, words: &'static [&'static str]) -> Param {
-        Param { id, symbol: "", unit: "", doc, also: &[], kind: Kind::Choice(words) }
+        Param {
+            id,
+            symbol: "",
+            unit: "",
+            doc,
+            also: &[],
+            spelled: &[],
+            sweep: None,
+            kind: Kind::Choice(words),
+        }
     }
 
     /// Any number of rows of numbers.
@@ -369,19 +395,56 @@ impl Param {
         columns: &'static [Column],
         preset: &'static [&'static [f64]],
     ) -> Param {
-        Param { id, symbol: "", unit: "1", doc, also: &[], kind: Kind::Rows { columns, preset } }
+        Param {
+            id,
+            symbol: "",
+            unit: "1",
+            doc,
+            also: &[],
+            spelled: &[],
+            sweep: None,
+            kind: Kind::Rows { columns, preset },
+        }
     }
 
     /// Is this its id, or another spelling?
     #[must_use]
     pub fn is_called(&self, name: &str) -> bool {
-        self.id == name || self.also.contains(&name)
+        self.is_measured_by(name) || self.spelled.contains(&name)
+    }
+
+    /// Does an axis of this base quantity run over it?
+    #[must_use]
+    pub fn is_measured_by(&self, base: &str) -> bool {
+        self.id == base || self.also.contains(&base)
+    }
+
+    /// The numbers that it takes.
+    #[must_use]
+    pub fn range(&self) -> Option<[f64; 2]> {
+        match self.kind {
+            Kind::Number { min, max, .. } => Some([min, max]),
+            _ => None,
+        }
     }
 
     /// The same parameter with other accepted spellings.
     #[must_use]
     pub const fn also(mut self, names: &'static [&'static str]) -> Param {
         self.also = names;
+        self
+    }
+    /// The same parameter with spellings that no axis goes by.
+    #[must_use]
+    pub const fn spelled(mut self, names: &'static [&'static str]) -> Param {
+        self.spelled = names;
+        self
+    }
+
+    /// The same parameter with the axis that default axes take for it.
+    #[must_use]
+    pub const fn swept(mut self, quantity: &'static str, domain: [f64; 2], power: f64) -> Param {
+        self.sweep = Some(Sweep { quantity, domain, power });
         self
     }
 }

@@ -66,8 +66,9 @@ pub(super) const KD: Param = Param::number("kd", "kd", "diffuse reflectance", [0
 pub(super) const KS: Param =
     Param::number("ks", "ks", "specular reflectance at normal incidence", [0.0, 1.0], Preset::Value(0.5));
 /// `n`.
-pub(super) const N: Param =
-    Param::number("n", "n", "exponent of the lobe", [0.0, 1e7], Preset::Value(50.0)).also(&["alpha"]);
+pub(super) const N: Param = Param::number("n", "n", "exponent of the lobe", [0.0, 1e7], Preset::Value(50.0))
+    .spelled(&["alpha"])
+    .swept("n", [1.0, 1000.0], 0.25);
 
 /// Two reflectances of which a model keeps its promise of E <= 1 only up to a sum of 1.
 ///

@@ -24,7 +24,8 @@ pub static INFO: ModelInfo = ModelInfo {
         "thickness of the fibres along the normal; the roughness of the sheen is its square root",
         [1e-3, 1.0],
         Preset::Value(0.5),
-    )],
+    )
+    .swept("sigma", [0.01, 1.0], 0.5)],
     laws: Laws { reciprocal: true, passive: true, isotropic: true },
     notes: "The layer scatters once; what `ltc-sheen` fits has all orders.",
     also: &[Alias { name: "sggx_fiber_single_scatter", set: &[] }],

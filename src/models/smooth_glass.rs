@@ -19,7 +19,7 @@ pub static INFO: ModelInfo = ModelInfo {
         (cite::BORN_WOLF_1999, "section 1.5.1 (Snell), 1.5.2 (F), 1.5.4 (total reflection)"),
         (cite::WALTER_2007, "Eq. 22 (F), 40 (refracted direction)"),
     ],
-    params: &[ETA_DIELECTRIC],
+    params: &[ETA_DIELECTRIC.swept("eta", [1.2, 2.5], 1.0)],
     laws: Laws { reciprocal: true, passive: true, isotropic: true },
     notes: "E is the reflected part F(mu), T = 1 - F the part of the flux that crosses. Radiance changes by (n_o / n_i)^2 on its way \
         across, flux does not. Critical cosine from inside: sqrt(1 - eta^2). The tables `fresnel-dielectric` hold F from both sides.",

@@ -29,7 +29,8 @@ pub static INFO: ModelInfo = ModelInfo {
         "width of the fibres about the horizon",
         [1e-3, 2.0],
         Preset::Value(0.5),
-    )],
+    )
+    .swept("sigma", [0.1, 1.0], 1.0)],
     laws: Laws { reciprocal: true, passive: true, isotropic: true },
     notes: "0 to all orders where the half vector is the normal. V-cavity masking has kinks; E is integrated between them.",
     also: &[Alias { name: "velvet00_vcavity", set: &[] }],

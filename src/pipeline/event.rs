@@ -184,6 +184,9 @@ pub struct ReconstructionEntry {
     pub practical: Option<f64>,
     /// Mean over the practical domain.
     pub practical_mean: Option<f64>,
+    /// Where it is far above the tolerance: what would mend it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub advice: Vec<String>,
     /// Where texels are fitted: the same for each choice, in the order `exact`, `least-squares`, `minimax`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub choices: Vec<ChoiceEntry>,

@@ -3,6 +3,7 @@
 //!
 //! The pipeline never prints: it sends [`Event`]s to a [`Progress`].
 
+mod advice;
 pub mod audit;
 mod event;
 mod fit;

@@ -1,5 +1,6 @@
 //! One table: bake, verify, round, compare between texels, encode in memory.
 
+use super::advice::advice;
 use super::event::{ChoiceEntry, ReconstructionEntry};
 use super::fit;
 use super::manifest::tool;
@@ -241,6 +242,7 @@ fn finished<'a>(
             whole_mean: r.whole.mean,
             practical: r.practical.as_ref().map(|p| p.largest.value),
             practical_mean: r.practical.as_ref().map(|p| p.mean),
+            advice: advice(planned, &f.encoding, r),
             choices: f.texels.iter().flat_map(|t| &t.choices).map(ChoiceEntry::from).collect(),
         })
     });

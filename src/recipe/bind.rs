@@ -6,9 +6,10 @@ use super::fault::{Fault, Faults};
 use super::read_axis::canonical;
 use super::span::join;
 use crate::grid::{Axis, AxisError, GridError, Warp};
-use crate::models::{self, Kind, ModelInfo, Param, ParamError};
+use crate::math::figures::exact as number;
+use crate::models::{self, ModelInfo, Param, ParamError};
 use crate::tables::spec::Request;
-use crate::tables::{self, BindError, Bound, ModelUse, TableInfo};
+use crate::tables::{self, BindError, Bound, ModelUse, Selection, Setting, TableInfo};
 use serde_json::Map;
 
 /// More repairs than a table of four axes can need; a limit that stops any loop.
@@ -87,6 +88,7 @@ impl<'a> Binder<'a> {
                 BindError::Grid(_)
                     | BindError::MissingAxis { .. }
                     | BindError::IdleAxis { .. }
+                    | BindError::OneParam { .. }
                     | BindError::Both { .. }
             );
             if about_axes && !axes {
@@ -121,7 +123,9 @@ impl<'a> Binder<'a> {
             },
             BindError::Grid(e) => faults.value(self.grid_path(e), fault),
             BindError::MissingAxis { .. } => faults.value(at("axis"), fault),
-            BindError::IdleAxis { axis, .. } => faults.value(self.axis_path(axis, ".id"), fault),
+            BindError::IdleAxis { axis, .. } | BindError::OneParam { axes: [_, axis], .. } => {
+                faults.value(self.axis_path(axis, ".id"), fault);
+            }
             BindError::Both { key, .. } => faults.key(self.param(key), fault),
         }
     }
@@ -198,7 +202,9 @@ impl<'a> Binder<'a> {
             }
             BindError::Param(e) => e.key().is_some_and(|key| self.request.params.remove(key).is_some()),
             BindError::Both { key, .. } => self.request.params.remove(key).is_some(),
-            BindError::IdleAxis { axis, .. } => self.find(axis).is_some_and(|i| self.remove_axis(i)),
+            BindError::IdleAxis { axis, .. } | BindError::OneParam { axes: [_, axis], .. } => {
+                self.find(axis).is_some_and(|i| self.remove_axis(i))
+            }
             BindError::MissingAxis { needed, .. } => self.add_axis(needed),
             BindError::Grid(e) => self.repair_grid(e),
             BindError::Unknown { .. } | BindError::Model { .. } | BindError::Foreign { .. } => false,
@@ -245,8 +251,11 @@ impl<'a> Binder<'a> {
 
     /// The kind's own axis for a coordinate stands in.
     fn add_axis(&mut self, base: &str) -> bool {
-        let own = tables::find(&self.request.kind)
-            .and_then(|kind| (kind.axes)().into_iter().find(|a| a.quantity.base_id() == base));
+        let own = tables::find(&self.request.kind).and_then(|kind| {
+            let layout = Selection::from(kind.layouts.first()?);
+            let axes = kind.default_axes(Setting { layout: &layout, model: None });
+            axes.into_iter().find(|a| a.quantity.base_id() == base)
+        });
         match (self.request.axes.as_mut(), own) {
             (Some(axes), Some(mut axis)) => {
                 axis.warp = Warp::Linear;
@@ -314,21 +323,31 @@ fn check_axes_alone(entry: &Entry, faults: &mut Faults) {
     }
 }
 
-/// An axis that sweeps a parameter must stay in the range of the parameter.
+/// Part of a value by which a map and its inverse may miss.
+const ROUNDING: f64 = 1e-12;
+
+/// An axis that sweeps a parameter must stay in the range of the parameter. All is said in the quantity of the axis.
 fn check_swept(entry: &Entry, bound: &Bound, faults: &mut Faults) {
     let spec = &bound.spec;
     let model = spec.model.as_ref().map(|(info, _)| (info.id, info.params));
     for (i, axis) in spec.grid.axes().iter().enumerate() {
+        let quantity = axis.quantity;
         for (owner, params) in model.into_iter().chain([(spec.kind.id, spec.kind.params)]) {
-            let Some(param) = params.iter().find(|p| p.is_called(axis.quantity.base_id())) else { continue };
-            let Kind::Number { min, max, .. } = param.kind else { continue };
-            let ends = axis.clamp.unwrap_or(axis.domain).map(|v| axis.quantity.to_base(v));
-            let got = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-            if got[0] < min || got[1] > max {
-                let axis_id = axis.quantity.id;
-                let fault =
-                    Fault::SweptRange { axis: axis_id, param: param.id, got, owner, allowed: [min, max] };
-                faults.value(format!("{}.axis[{i}].domain", entry.path), fault);
+            let Some(param) = params.iter().find(|p| p.is_measured_by(quantity.base_id())) else { continue };
+            let Some([min, max]) = param.range() else { continue };
+            let got = axis.clamp.unwrap_or(axis.domain);
+            let ends = got.map(|v| quantity.to_base(v));
+            let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+            if low < min - ROUNDING * min.abs() || high > max + ROUNDING * max.abs() {
+                let [lo, hi] = quantity.domain;
+                let [least, most] = quantity.interval_from_base([min, max]);
+                let map = quantity.base.as_ref().map(|b| {
+                    format!("{}, its {} from {} to {}", b.formula, param.id, number(min), number(max))
+                });
+                let allowed = [least.max(lo), most.min(hi)];
+                let fault = Fault::SweptRange { axis: quantity.id, got, owner, allowed, map };
+                let key = if axis.clamp.is_some() { "clamp" } else { "domain" };
+                faults.value(format!("{}.axis[{i}].{key}", entry.path), fault);
             }
         }
     }

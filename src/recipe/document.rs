@@ -61,7 +61,8 @@ pub(super) struct Entry {
     pub(super) tolerance: Option<f64>,
     pub(super) outputs: Option<Vec<Option<Output>>>,
     pub(super) on_miss: OnMiss,
-    pub(super) reconstruction: bool,
+    /// None: as the kind is read.
+    pub(super) reconstruction: Option<bool>,
     /// Axes without a length are searched.
     pub(super) size: Option<Sizing>,
     pub(super) texels: Texels,
@@ -131,9 +132,7 @@ fn entry(table: &DeTable<'_>, path: String, faults: &mut Faults) -> Entry {
         tolerance: section.number("tolerance", faults),
         outputs: outputs(&section, faults),
         on_miss: on_miss.unwrap_or_default(),
-        reconstruction: section
-            .word("reconstruction", &[("on", true), ("off", false)], faults)
-            .unwrap_or(true),
+        reconstruction: section.word("reconstruction", &[("on", true), ("off", false)], faults),
         waivers: waivers(&section, faults),
         size,
         texels,

@@ -169,18 +169,18 @@ pub enum Fault {
         allowed: String,
     },
     /// A swept parameter that leaves its range on the axis.
-    #[error("axis {axis} sweeps {param} over [{}, {}]", number(.got[0]), number(.got[1]))]
+    #[error("axis {axis} runs over [{}, {}]", number(.got[0]), number(.got[1]))]
     SweptRange {
         /// Axis id.
         axis: &'static str,
-        /// Parameter id.
-        param: &'static str,
-        /// Base values at the ends of the axis.
+        /// The ends of the axis, in its own quantity.
         got: [f64; 2],
         /// Model or kind that has the parameter.
         owner: &'static str,
-        /// Its range.
+        /// What it takes, in the quantity of the axis.
         allowed: [f64; 2],
+        /// Where the axis goes by another quantity than the parameter: its map and the range of the parameter, in words.
+        map: Option<String>,
     },
     /// A Fresnel parameter of a table that splits the Fresnel factor off.
     #[error("{key} = {} has no effect: table {kind} splits the Fresnel factor off", number(*got))]
@@ -191,6 +191,26 @@ pub enum Fault {
         key: &'static str,
         /// The value given.
         got: f64,
+    },
+    /// A law that the model does not claim, and that it breaks on these axes.
+    #[error("{model} does not keep law{} {}: {what}", if .laws.len() == 1 { "" } else { "s" }, .laws.join(", "))]
+    Unclaimed {
+        /// The model.
+        model: &'static str,
+        /// Table kind.
+        kind: &'static str,
+        /// The laws.
+        laws: Vec<&'static str>,
+        /// What was found, and where.
+        what: String,
+    },
+    /// A model that has no finite value on these axes.
+    #[error("{model} has no value on these axes: {what}")]
+    NoValue {
+        /// The model.
+        model: &'static str,
+        /// What was found, and where.
+        what: String,
     },
     /// The table cannot be bound.
     #[error("{}", bind_message(.0))]
@@ -214,10 +234,14 @@ impl Fault {
             Fault::Twice { why, .. } => Some(why.clone()),
             Fault::OutputForm { allowed, .. } => Some(format!("containers are {allowed}")),
             Fault::IdleWaiver { allowed, .. } => Some(format!("it checks {allowed}")),
-            Fault::SweptRange { owner, allowed: [min, max], .. } => {
-                Some(format!("{owner} takes {} to {}", number(*min), number(*max)))
+            Fault::SweptRange { axis, owner, allowed: [min, max], map, .. } => {
+                let map = map.as_deref().map_or_else(String::new, |m| format!(" ({m})"));
+                Some(format!("{owner} takes {axis} from {} to {}{map}", number(*min), number(*max)))
             }
             Fault::SplitFresnel { .. } => Some("allowed: 1".to_owned()),
+            Fault::Unclaimed { model, kind, .. } => {
+                Some(format!("table {kind} checks what {model} does not claim (`brdfbake describe {model}`)"))
+            }
             Fault::Bind(
                 BindError::Unknown { suggestion, allowed, .. }
                 | BindError::Param(ParamError::Unknown { suggestion, allowed, .. }),
@@ -252,6 +276,15 @@ impl Fault {
             Fault::WideRange { .. } => "store it as half or float, or take a layout with bounded channels",
             Fault::SweptRange { .. } => "give the axis a domain inside that range",
             Fault::SplitFresnel { .. } => "leave it out; the shader applies F0 and F90",
+            Fault::Unclaimed { laws, .. } => {
+                let one = |law: &&str| format!("{{ law = \"{law}\", reason = \"...\" }}");
+                let all: Vec<String> = laws.iter().map(one).collect();
+                return Some(format!(
+                    "give the axes ends between which it holds, or waive it: waive = [{}]",
+                    all.join(", ")
+                ));
+            }
+            Fault::NoValue { .. } => "move the axis off that end, or take another model",
             Fault::Bind(e) => bind_remedy(e)?,
             _ => return None,
         };
@@ -283,6 +316,7 @@ fn bind_remedy(error: &BindError) -> Option<&'static str> {
             Some("add a [[table.axis]] for it, or leave all axes out to get the kind's own")
         }
         BindError::IdleAxis { .. } => Some("leave the axis out"),
+        BindError::OneParam { .. } => Some("leave one of them out"),
         BindError::ChannelTwice { .. } => Some("a file has one channel of a name; leave one out"),
         BindError::NoMix { .. } => Some("name a layout instead"),
         BindError::LayoutAndChannels { .. } => {

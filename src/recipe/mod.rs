@@ -96,6 +96,7 @@ mod name;
 mod outputs;
 mod plan;
 mod preset;
+mod probe;
 mod read_axis;
 mod section;
 mod sizing;

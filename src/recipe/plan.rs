@@ -7,12 +7,12 @@ use super::fault::{Fault, Faults};
 use super::outputs::{self, Output};
 use super::section::unknown_word;
 use super::sizing::Sizing;
-use super::{TOLERANCE, name};
+use super::{TOLERANCE, name, probe};
 use crate::grid::fit::Texels;
 use crate::grid::provenance::{SizeRecord, Waiver};
 use crate::tables::driver::OnMiss;
 use crate::tables::spec::Request;
-use crate::tables::{Bound, TableInfo};
+use crate::tables::{Bound, Setting, TableInfo};
 use crate::verify;
 use serde_json::Value as Json;
 use std::collections::HashSet;
@@ -111,16 +111,17 @@ pub struct TableRequest {
 }
 
 impl TableRequest {
-    /// A request with the defaults of a recipe: half precision EXR, default tolerance, reconstruction measured.
+    /// A request with the defaults of a recipe: half precision EXR, default tolerance, reconstruction measured where texels are blended.
     #[must_use]
     pub fn new(name: impl Into<String>, request: Request) -> TableRequest {
+        let reconstruction = crate::tables::find(&request.kind).is_none_or(|kind| kind.blended);
         TableRequest {
             name: name.into(),
             request,
             tolerance: None,
             on_miss: OnMiss::Fail,
             outputs: vec![outputs::default()],
-            reconstruction: true,
+            reconstruction,
             size: None,
             texels: Texels::default(),
             waivers: Vec::new(),
@@ -217,7 +218,7 @@ fn entry(i: usize, table: TableRequest) -> Entry {
         tolerance: table.tolerance,
         outputs: Some(table.outputs.into_iter().map(Some).collect()),
         on_miss: table.on_miss,
-        reconstruction: table.reconstruction,
+        reconstruction: Some(table.reconstruction),
         size: table.size,
         texels: table.texels,
         waivers: table.waivers.into_iter().map(Some).collect(),
@@ -286,16 +287,22 @@ fn table(entry: Entry, tolerance: Option<f64>, faults: &mut Faults) -> Option<Pl
     if faults.len() > before {
         return None;
     }
+    let (path, listed) = (entry.path.clone(), entry.outputs.is_some());
     let finest = stored.iter().flatten().map(|s| s.half_step).fold(f64::INFINITY, f64::min);
+    let bound = bound?;
+    let spec = &bound.spec;
+    let (kind, setting) =
+        (spec.kind, Setting { layout: &spec.layout, model: spec.model.as_ref().map(|m| m.0) });
+    let least = (kind.least_tolerance)(&setting);
     let mut planned = PlannedTable {
         name: entry.name?,
         file: entry.file,
         around: entry.around,
-        bound: bound?,
-        tolerance: entry.tolerance.or(tolerance).unwrap_or(finest),
+        bound,
+        tolerance: entry.tolerance.or(tolerance).unwrap_or(finest.max(least)),
         on_miss: entry.on_miss,
         outputs,
-        reconstruction: entry.reconstruction,
+        reconstruction: entry.reconstruction.unwrap_or(kind.blended),
         size: None,
         texels: entry.texels,
         found: None,
@@ -310,6 +317,11 @@ fn table(entry: Entry, tolerance: Option<f64>, faults: &mut Faults) -> Option<Pl
         }
         size
     });
+    let before = faults.len();
+    probe::look(&path, listed, &planned, faults);
+    if faults.len() > before {
+        return None;
+    }
     planned.canonical = canonical::table(&planned);
     planned.hash = canonical::hash(&planned.canonical);
     Some(planned)

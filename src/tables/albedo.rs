@@ -4,7 +4,7 @@
 use super::role::{Light, Lobe, Side};
 use super::sides::Sides;
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
 use crate::grid::Axis;
@@ -61,6 +61,8 @@ pub static INFO: TableInfo = TableInfo {
     params: &[],
     laws: &["finite", "range", "energy", "cross-check", "reciprocity", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "Axes: mu, phi (the view azimuth, for anisotropic models), and any number parameter of the model (alpha or roughness, f0, \
         eta, ...). t wants a model that transmits, inside one with eta; axes f0_root4 and f0_root4_inverse spread eta above and \
         below 1.",
@@ -72,8 +74,8 @@ fn crosses(role: Role) -> bool {
     matches!(role, Role::Albedo(_, light, side) if light != Light::All || side == Side::Inside)
 }
 
-fn default_axes() -> Vec<Axis> {
-    super::dfg::view_and_roughness(32)
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
+    super::default_axes::white_albedo()
 }
 
 struct Albedo {

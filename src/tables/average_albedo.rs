@@ -4,7 +4,7 @@ use super::integral::{Functional, integrate};
 use super::role::{Light, Lobe, Side};
 use super::sides::Sides;
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
@@ -55,12 +55,14 @@ pub static INFO: TableInfo = TableInfo {
     params: &[],
     laws: &["finite", "range", "energy", "reciprocity", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "Integrated directly, not from a baked E table: no interpolation error enters. Axes: any number parameter of the model.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
-    Quantity::find("roughness").map(|q| Axis::new(q, 32, Texel::Endpoint)).into_iter().collect()
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
+    Quantity::find("roughness").map(|q| Axis::new(q, 64, Texel::Endpoint)).into_iter().collect()
 }
 
 struct AverageAlbedo {

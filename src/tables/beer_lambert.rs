@@ -1,11 +1,12 @@
 //! Transmittance of a medium over the length of the path, in colour: fog, water, coloured glass.
 
+use super::default_axes::axis;
 use super::role::Band;
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
-use crate::grid::{Axis, Quantity, Texel};
+use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::{Param, Preset};
 use crate::terms::medium;
@@ -61,14 +62,15 @@ pub static INFO: TableInfo = TableInfo {
     ],
     laws: &["finite", "range", "monotone", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "The defaults are pure water at 650, 550 and 450 nm, d in metres: with fresnel-dielectric at eta 1.333 all that clear water needs. \
         d runs along the refracted ray; it is not the vertical depth.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
-    let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([0.0, 50.0]);
-    Quantity::find("path").map(axis).into_iter().collect()
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
+    axis("path", 256, [0.0, 50.0], Warp::Power(0.25)).into_iter().collect()
 }
 
 struct Table {

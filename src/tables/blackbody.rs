@@ -1,12 +1,13 @@
 //! The colour of a black body over its temperature: fire, lava, lamps.
 
+use super::default_axes::axis;
 use super::role::{Band, Glow};
 use super::spectrum::{self, Spectrum};
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
-use crate::grid::{Axis, Quantity, Texel};
+use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::{Param, Preset};
 use crate::terms::blackbody::{planck, wyman_xyz};
@@ -74,13 +75,21 @@ pub static INFO: TableInfo = TableInfo {
     }],
     laws: &["range", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "Fire is 1000 to 2000 K, a lamp 2856, daylight about 6500. Below 800 K the fit of the eye in the far red decides the hue.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
-    let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([1000.0, 12000.0]);
-    Quantity::find("temperature").map(axis).into_iter().collect()
+fn default_axes(setting: &Setting<'_>) -> Vec<Axis> {
+    let (last, power) = match setting.layout.id {
+        // grows as T^4 and faster: at 12000 K its blue is beyond the largest half
+        "light" => (10000.0, 1.5),
+        "hue-unclamped" => (12000.0, 0.25),
+        // blue leaves 0 with a kink
+        _ => (12000.0, 0.4),
+    };
+    axis("temperature", 256, [1000.0, last], Warp::Power(power)).into_iter().collect()
 }
 
 struct Table {

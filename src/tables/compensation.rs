@@ -4,15 +4,16 @@
 //! single scattering by `1 + F0 turquin(mu_o)`. 1 - E is stored instead of E because it keeps its digits where E is near 1.
 
 use super::average_albedo::average;
+use super::default_axes::{coupled, view_and_roughness, white_albedo};
 use super::integral::{Functional, integrate};
 use super::memo::Memo;
 use super::role::{Lobe, Side};
 use super::sweep::Sweep;
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
-use crate::grid::Axis;
+use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use std::f64::consts::PI;
 
@@ -66,15 +67,24 @@ pub static INFO: TableInfo = TableInfo {
     params: &[],
     laws: &["finite", "range", "reciprocity", "complement", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "E is that of F = 1. The errors of E and E_avg are carried through to each channel. lobe grows without bound where mu and \
         alpha go to 0 together (2.8 at alpha = 0.01): give its axis an end. F_ms of a colour is a factor of the shader: F_avg^2 E_avg / \
         (1 - F_avg (1 - E_avg)), or with F_avg once as on the slides.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
-    let mut axes = super::dfg::view_and_roughness(32);
-    if let Some(roughness) = axes.last_mut() {
+fn default_axes(setting: &Setting<'_>) -> Vec<Axis> {
+    let mut axes = match setting.layout.id {
+        "lobe" => view_and_roughness(coupled(2.0, 4.0, 1.0), Warp::Power(0.5)),
+        "turquin" => view_and_roughness(coupled(2.0, 8.0, 1.0), Warp::Linear),
+        _ => white_albedo(),
+    };
+    if setting.holds("ms.lobe")
+        && let Some(roughness) = axes.last_mut()
+    {
+        // it has no bound as mu and roughness go to 0
         roughness.domain = [0.1, 1.0];
     }
     axes

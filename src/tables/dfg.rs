@@ -7,14 +7,15 @@
 //! `F = F0 + (1 - F0) Fc - b v (1 - v)^6`, the albedo is exactly `F0 * scale + bias - d * f82`, with
 //! `d = (F0 + (1 - F0) (6/7)^5) (1 - tint)`, what F lies below Schlick's curve at v = 1/7.
 
+use super::default_axes::{coupled, split_sum, view_and_roughness};
 use super::integral::{Functional, integrate};
 use super::role::{Light, Lobe, OtherLobe, Side, Weight};
 use super::sweep::Sweep;
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
-use crate::grid::{Axis, Quantity, Texel, Warp};
+use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS, Sums};
 use crate::models;
 use crate::terms::schlick;
@@ -139,27 +140,23 @@ pub static INFO: TableInfo = TableInfo {
     params: &[],
     laws: &["finite", "range", "energy", "split", "cross-check", "reciprocity", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "alpha = 0 is the mirror: scale = 1 - (1 - mu)^5, bias = (1 - mu)^5. cloth grows as 1 / sqrt(2 pi alpha) where mu and \
         alpha go to 0 (9 in Filament's first texel), and diffuse exceeds 1 on rough surfaces at grazing: half floats hold them, \
         fixed point spreads its steps over their range.",
     bind,
 };
 
-/// `sqrt(mu)` and roughness on endpoints, 64 x 64: see README, "Which axes".
-fn default_axes() -> Vec<Axis> {
-    view_and_roughness(64)
-}
-
-/// `sqrt(mu)` by roughness on endpoints, the best axes that need no coupling.
-pub(super) fn view_and_roughness(len: usize) -> Vec<Axis> {
-    ["mu", "roughness"]
-        .into_iter()
-        .filter_map(Quantity::find)
-        .map(|q| {
-            let warp = if q.id == "mu" { Warp::Power(0.5) } else { Warp::Linear };
-            Axis::new(q, len, Texel::Endpoint).warped(warp)
-        })
-        .collect()
+fn default_axes(setting: &Setting<'_>) -> Vec<Axis> {
+    if setting.holds("dfg.loss") || setting.holds("dfg.rest") {
+        // smooth where a mirror begins, so a gentler coupling serves
+        return view_and_roughness(coupled(2.5, 4.0, 1.0), Warp::Power(0.65));
+    }
+    if setting.holds("dfg.f82") || setting.holds("dfg.f82-x16") {
+        return view_and_roughness(coupled(4.0, 8.0, 0.25), Warp::Power(0.5));
+    }
+    split_sum()
 }
 
 fn is_of_the_model(role: Role) -> bool {
@@ -211,6 +208,14 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         if let Part::Kept(_, _, range) = part {
             *range = channel.range;
         }
+    }
+    let lobes = parts.iter().all(|p| matches!(p, Part::Lobe(_) | Part::Kept(..)));
+    if let Some((info, _)) =
+        spec.model.as_ref().filter(|(info, _)| !lobes && info.measured("alpha").is_none())
+    {
+        let why =
+            "has no alpha, so that every row over it would be the same; take `albedo`, or a model with alpha";
+        return Err(BindError::Model { kind: spec.kind.id, model: info.id.to_owned(), why });
     }
     let mut functionals = Vec::new();
     for needed in parts.iter().flat_map(Part::functionals) {

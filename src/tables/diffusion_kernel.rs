@@ -8,13 +8,14 @@
 //! radius r > x down to the part (2/pi) asin(x/r), integrated by parts. L substitutes y = h sinh t, h the larger of x and
 //! the least length of the profile. Gaussians are closed forms.
 
+use super::default_axes::axis;
 use super::profile::{self, Profile, Rgb};
 use super::role::Band;
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
-use crate::grid::{Axis, Quantity, Texel, Warp};
+use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS, Sums, line};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -55,6 +56,8 @@ pub static INFO: TableInfo = TableInfo {
     params: profile::PARAMS,
     laws: &["finite", "range", "total", "monotone", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: profile::NOTES,
     bind,
 };
@@ -65,9 +68,8 @@ static SOURCES: [Source; 2 + profile::SOURCES.len()] = profile::with_sources([
     Source::new(cite::DEON_LUEBKE_2007, "section 14.4.3"),
 ]);
 
-fn default_axes() -> Vec<Axis> {
-    let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([0.0, 16.0]).warped(Warp::Power(0.5));
-    Quantity::find("offset").map(axis).into_iter().collect()
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
+    axis("offset", 256, [0.0, 16.0], Warp::Power(0.25)).into_iter().collect()
 }
 
 struct Kernel {

@@ -1,9 +1,12 @@
 //! Radial diffusion profiles over the distance: per area, per ring, and as a cumulative distribution.
 
+use super::default_axes::axis;
 use super::profile::{self, Profile};
 use super::role::{Band, Per};
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Spec, TableInfo, TexelError};
-use crate::grid::{Axis, Quantity, Texel, Warp};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Spec, TableInfo, TexelError,
+};
+use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::Param;
 
@@ -53,6 +56,8 @@ pub static INFO: TableInfo = TableInfo {
     params: &PARAMS,
     laws: &["finite", "range", "total", "monotone", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: profile::NOTES,
     bind,
 };
@@ -64,9 +69,8 @@ static PARAMS: [Param; 1 + profile::PARAMS.len()] = profile::with(Param::choice(
     &["one", "albedo"],
 ));
 
-fn default_axes() -> Vec<Axis> {
-    let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([0.0, 16.0]).warped(Warp::Power(0.5));
-    Quantity::find("radius").map(axis).into_iter().collect()
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
+    axis("radius", 256, [0.0, 16.0], Warp::Power(0.25)).into_iter().collect()
 }
 
 /// What the channels hold.

@@ -1,9 +1,12 @@
 //! Radii with the density of a diffusion profile: the inverse of its cumulative distribution.
 
+use super::default_axes::axis;
 use super::profile::{self, Profile};
 use super::role::Band;
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Spec, TableInfo, TexelError};
-use crate::grid::{Axis, Quantity, Texel, Warp};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Spec, TableInfo, TexelError,
+};
+use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::math::root::solve;
 use crate::terms::burley_diffusion;
@@ -33,13 +36,14 @@ pub static INFO: TableInfo = TableInfo {
     params: profile::PARAMS,
     laws: &["finite", "range", "monotone", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "u = 1 is infinitely far and counts as 1 - 2^-53. The slope grows towards both ends; the default axis ends at 0.999.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
-    let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([0.0, 0.999]).warped(Warp::OneMinusPower(0.25));
-    Quantity::find("u").map(axis).into_iter().collect()
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
+    axis("u", 256, [0.0, 0.999], Warp::OneMinusPower(0.5)).into_iter().collect()
 }
 
 struct Table {

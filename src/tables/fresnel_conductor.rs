@@ -1,13 +1,14 @@
 //! Reflectance of metals over the angle, in colour.
 
+use super::default_axes::axis;
 use super::fresnel_dielectric::part;
 use super::role::{Band, Polarisation};
 use super::spectrum::{self, Spectrum};
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
-use crate::grid::{Axis, Quantity, Texel, Warp};
+use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::{Param, Preset};
 use crate::terms::fresnel::{self, Polarised};
@@ -84,13 +85,15 @@ pub static INFO: TableInfo = TableInfo {
     ],
     laws: &["range", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "n and k of a metal are linear between its measured rows, 20 to 40 nm apart. Axes: mu, and with metal = index also n and k.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
-    let axis = |q| Axis::new(q, 128, Texel::Endpoint).warped(Warp::Power(0.5));
-    Quantity::find("mu").map(axis).into_iter().collect()
+fn default_axes(setting: &Setting<'_>) -> Vec<Axis> {
+    let warp = if setting.layout.id == "polarised" { Warp::Power(0.4) } else { Warp::OneMinusPower(2.0) };
+    axis("mu", 128, [0.0, 1.0], warp).into_iter().collect()
 }
 
 struct Table {

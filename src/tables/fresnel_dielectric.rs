@@ -1,11 +1,12 @@
 //! Reflectance of a smooth dielectric interface over angle and relative index, from one side or both.
 
+use super::default_axes::axis;
 use super::role::{Polarisation, Side};
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
-use crate::grid::{Axis, Quantity, Texel, Warp};
+use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::terms::fresnel::{self, Polarised};
 
@@ -64,19 +65,22 @@ pub static INFO: TableInfo = TableInfo {
     params: &[],
     laws: &["finite", "range", "fresnel-reversible", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "Closed form: the integration error is rounding. Bilinear reading loses an order at the critical angle, where F has a \
         vertical tangent; put the eta axis on one side of 1. Both-sides layouts want eta > 1.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
-    let axis = |id: &str, len, domain: [f64; 2], warp| {
-        Quantity::find(id).map(|q| Axis::new(q, len, Texel::Endpoint).over(domain).warped(warp))
+fn default_axes(setting: &Setting<'_>) -> Vec<Axis> {
+    let (len, warp) = match setting.layout.id {
+        "unpolarised" => (128, Warp::OneMinusPower(2.0)),
+        "polarised" => (128, Warp::Power(0.5)),
+        // from inside F has a vertical tangent at the critical angle, which moves with eta
+        _ => (256, Warp::OneMinusPower(0.5)),
     };
-    [axis("mu", 128, UNIT, Warp::Power(0.5)), axis("eta", 32, [1.2, 2.5], Warp::Linear)]
-        .into_iter()
-        .flatten()
-        .collect()
+    let axes = [axis("mu", len, UNIT, warp), axis("eta", 64, [1.2, 2.5], Warp::Power(0.5))];
+    axes.into_iter().flatten().collect()
 }
 
 struct Table {

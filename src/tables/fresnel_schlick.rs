@@ -1,10 +1,11 @@
 //! Schlick's Fresnel factor and its generalisations over the angle.
 
+use super::default_axes::axis;
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
-use crate::grid::{Axis, Quantity, Texel};
+use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::{Param, Params, Preset};
 use crate::terms::{fresnel, lazanyi, schlick};
@@ -64,16 +65,15 @@ pub static INFO: TableInfo = TableInfo {
     ],
     laws: &["range", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "Not exact Fresnel: the plain form is off by up to 0.060 at eta 1.33, 0.036 at 1.5, 0.082 at 2.5. Axes: mu, and any number of its own (f0, n, k, eta).",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
-    ["mu", "f0"]
-        .into_iter()
-        .filter_map(Quantity::find)
-        .map(|q| Axis::new(q, if q.id == "mu" { 128 } else { 32 }, Texel::Endpoint))
-        .collect()
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
+    let mu = axis("mu", 128, [0.0, 1.0], Warp::OneMinusPower(2.0));
+    [mu, axis("f0", 32, [0.0, 1.0], Warp::Linear)].into_iter().flatten().collect()
 }
 
 struct Table {

@@ -11,7 +11,7 @@
 use super::profile::{self, Profile, Rgb};
 use super::role::Band;
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
@@ -64,6 +64,8 @@ pub static INFO: TableInfo = TableInfo {
     params: profile::PARAMS,
     laws: &["finite", "range", "total"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: false,
     notes: "The length of the axis is the number of Gaussians, at most 16. The error of the texels is rounding; what the fit leaves over stands in \
         the rule of the file and in the layout weights-residual. Switch reconstruction off: nobody reads between Gaussians.",
     bind,
@@ -76,7 +78,7 @@ static SOURCES: [Source; 3 + profile::SOURCES.len()] = profile::with_sources([
     Source::new(cite::NELDER_MEAD_1965, "the method"),
 ]);
 
-fn default_axes() -> Vec<Axis> {
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
     let axis = |q| Axis::new(q, 6, Texel::Endpoint).over([0.0, 5.0]);
     Quantity::find("gaussian").map(axis).into_iter().collect()
 }

@@ -3,14 +3,15 @@
 //! With `F = F0 + (F90 - F0) s(wo.wh)`, the albedo is `E_white (F0 + (F90 - F0) s_mean)`. `s` is `(1 - v)^e`, or the curve of a
 //! dielectric, `(F(v, eta) - F0) / (1 - F0)`.
 
+use super::default_axes::{coupled, split_sum, view_and_roughness};
 use super::integral::{Functional, integrate};
 use super::role::{Lobe, Weight};
 use super::sweep::Sweep;
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
-use crate::grid::Axis;
+use crate::grid::{Axis, Warp};
 use crate::integrate::{BATCH, Estimate, MAX_CHANNELS, Nodes, Sums, View, adaptive, ladder};
 use crate::models::{Brdf, Param, Preset};
 
@@ -37,7 +38,7 @@ pub static INFO: TableInfo = TableInfo {
         Source::new(cite::SCHLICK_1994, "Eq. 15 (F, with a free exponent)").when("curve", &["power"]),
         Source::new(cite::WALTER_2007, "Eq. 22 (F of a dielectric)").when("curve", &["dielectric"]),
     ],
-    coordinates: &["mu", "alpha"],
+    coordinates: &["mu"],
     layouts: &[
         Layout { id: "s", doc: "E = E_white (F0 + (F90 - F0) s)", channels: &[MEAN] },
         Layout { id: "part", doc: "E = F0 E_white + (F90 - F0) part", channels: &[PART] },
@@ -60,14 +61,21 @@ pub static INFO: TableInfo = TableInfo {
     ],
     laws: &["finite", "range", "reciprocity", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "Sweep exponent (or schlick_z, exponent = 5 (1 - z) / z) or eta (or f0_root4) on a third axis. With e = 5 the part is the \
         bias of `dfg`. At eta = 1 nothing is reflected and s is 0. visible takes the sampler of the model, which draws visible normals \
         for ggx and beckmann.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
-    super::dfg::view_and_roughness(32)
+fn default_axes(setting: &Setting<'_>) -> Vec<Axis> {
+    let scale = match setting.layout.id {
+        "s" => 8.0,
+        "visible" => 4.0,
+        _ => return split_sum(),
+    };
+    view_and_roughness(coupled(4.0, scale, 0.25), Warp::Power(0.5))
 }
 
 /// What a channel is.

@@ -15,7 +15,7 @@ use super::role::{Lobe, Side};
 use super::sides::{crossing, reflected};
 use super::sweep::Sweep;
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
@@ -82,13 +82,15 @@ pub static INFO: TableInfo = TableInfo {
     params: &[],
     laws: &["finite", "range", "reciprocity", "complement", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 1e-3,
+    blended: true,
     notes: "Wants a model with eta that transmits (ggx-glass, beckmann-glass). Means and shares do not depend on mu: a table of them \
         alone is `average-albedo`, layout both-sides. From inside, total reflection makes the integrals dear: keep the tables small. \
         At eta = 1 both sides are the same and x = 1/2.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
     let axis = |id: &str, len, domain: Option<[f64; 2]>| {
         let axis = Quantity::find(id).map(|q| Axis::new(q, len, Texel::Endpoint));
         axis.map(|a| domain.map_or(a.clone(), |d| a.over(d)))
@@ -107,6 +109,9 @@ enum Part {
     Average,
     Share,
 }
+
+/// How often means are asked for again, with more digits.
+const REFINEMENTS: usize = 3;
 
 struct Glass {
     sweep: Sweep,
@@ -209,13 +214,20 @@ impl Glass {
 
 impl Baker for Glass {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
-        let all = self.at(at, tolerance, tolerance)?;
-        let largest = all.error[..self.parts.len()].iter().copied().fold(0.0, f64::max);
-        if largest <= tolerance || !self.wants(Part::Share) || !largest.is_finite() {
-            return Ok(all);
-        }
+        let mut inner = tolerance;
+        let mut all = self.at(at, tolerance, inner)?;
         // a share is a quotient of means: they need more digits where little is missing
-        self.at(at, tolerance, (0.5 * tolerance * tolerance / largest).max(1e-9))
+        for _ in 0..REFINEMENTS {
+            let largest = all.error[..self.parts.len()].iter().copied().fold(0.0, f64::max);
+            if largest <= tolerance || !self.wants(Part::Share) || !largest.is_finite() {
+                break;
+            }
+            inner = (0.5 * inner * tolerance / largest).max(1e-9);
+            let before = all.evaluations;
+            all = self.at(at, tolerance, inner)?;
+            all.evaluations = all.evaluations.saturating_add(before);
+        }
+        Ok(all)
     }
 
     fn rule(&self) -> String {

@@ -11,7 +11,7 @@
 use super::role::{Component, Lobe};
 use super::sweep::Sweep;
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
@@ -70,12 +70,14 @@ pub static INFO: TableInfo = TableInfo {
     params: &[],
     laws: &["range", "monotone", "total", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: false,
     notes: "u = 0 is the normal, u = 1 the horizon. Axes: u, v, mu, phi (the view azimuth, for anisotropic models) and any number parameter of the model. \
         A light reflected below the horizon does not exist here: the density is that of the reflected light alone.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
     let axis = |id: &str, len| Quantity::find(id).map(|q| Axis::new(q, len, Texel::Center));
     let roughness = axis("roughness", 4).map(|a| a.over([0.2, 1.0]));
     [axis("u", 32), axis("v", 32), axis("mu", 8), roughness].into_iter().flatten().collect()

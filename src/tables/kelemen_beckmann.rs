@@ -4,7 +4,7 @@
 //! 1 / pi, as the chapter's lights carry it.
 
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
@@ -36,11 +36,13 @@ pub static INFO: TableInfo = TableInfo {
     params: &[],
     laws: &["finite", "range", "normalised", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "m below 1/32 does not fit: the texel at mu_m = 1 would exceed 1, which is a finding, not a clamp.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
     let axis = |id: &str, domain| Quantity::find(id).map(|q| Axis::new(q, 512, Texel::Center).over(domain));
     [axis("mu_m", [0.0, 1.0]), axis("m", [0.0, 1.0])]
         .into_iter()

@@ -64,7 +64,9 @@ pub static INFO: TableInfo = TableInfo {
     model: ModelUse::Any("ggx"),
     params: &[],
     laws: &["finite", "range", "energy", "cross-check", "reciprocity", "honest"],
-    axes: || axes(0.0),
+    axes: |setting| if setting.layout.id == "packed" { axes(0.0) } else { super::default_axes::split_sum() },
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "Of a model with a Fresnel factor that can be split off, f is taken without it. The sphere channel is not a function of view and \
         roughness: it sits on the texture's own two coordinates, whatever the axes are, and a clamp on an axis must not \
         reach beyond one texel.",

@@ -7,9 +7,11 @@ use super::ltc_fit::{self, Family, Fitted};
 use super::role::{Distance, Entry, Fitted as Kind, Light, Lobe, Side};
 use super::sweep::Sweep;
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError, finite,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
+    finite,
 };
 use crate::cite;
+use crate::grid::Axis;
 use crate::grid::provenance::{Residual, Spread};
 use crate::grid::table::{Extreme, Table};
 use crate::integrate::{Estimate, MAX_CHANNELS};
@@ -107,9 +109,12 @@ pub static INFO: TableInfo = TableInfo {
     model: ModelUse::Any("ggx"),
     params: &[],
     laws: &["range", "energy", "lobe", "cross-check", "reciprocity", "honest"],
-    axes: || super::ltc_magnitude::axes(LEAST_ROUGHNESS),
-    notes: "Errors are those of the best matrix, not of its lobe: how well the lobe fits is in the channels ltc.l3 and ltc.variation and, as largest \
-        and mean, in every file. Broad lobes leave the matrix loose, so entries cost more than fits: ask for 1e-3, not less. A \
+    axes: default_axes,
+    least_tolerance: |_| 1e-3,
+    blended: true,
+    notes: "The error of a matrix entry is that of the residual of its lobe (ltc.l3), which is what a fit promises: broad lobes and grazing views \
+        leave the matrix loose, and other matrices fit as well. Levels are raised until the entries agree too, or end. How well the lobe fits is \
+        in the channels ltc.l3 and ltc.variation and, as largest and mean, in every file. Ask for 1e-3, not less. A \
         mirror has no matrix: keep alpha at 1e-5 or more. Of a model with a Fresnel factor that can be split off, f is taken without it. \
         The file's channels go by name: EXR sorts them.",
     bind,
@@ -141,6 +146,16 @@ fn part(role: Role) -> Option<Part> {
     }
 }
 
+/// Those of Heitz and Hill, whose readers know them; from broader lobes on where entries grow as 1 / alpha, beyond a half.
+fn default_axes(setting: &Setting<'_>) -> Vec<Axis> {
+    let grows = |role: Role| {
+        use Entry::{A, B, Z11, Z13, Z22, Z31};
+        matches!(role, Role::Matrix(_, Z11 | Z13 | Z22 | Z31 | A | B))
+    };
+    let grows = setting.layout.channels.iter().any(|c| grows(c.role));
+    super::ltc_magnitude::axes(if grows { 0.1 } else { LEAST_ROUGHNESS })
+}
+
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     // seen askew, an anisotropic lobe is not even in y and has no matrix of this form
     if spec.axis("phi").is_some() {
@@ -149,7 +164,9 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         return Err(BindError::IdleAxis { kind: INFO.id, axis: "phi", allowed });
     }
     let splits = spec.model.as_ref().is_some_and(|(info, _)| info.splits);
-    Ok(Box::new(Matrix { sweep: Sweep::new(spec, splits)?, roles: spec.roles(), parts: spec.each(part)? }))
+    let sweep = Sweep::new(spec, splits)?;
+    sweep.refuse_mirrors(spec.kind.id, "is a mirror: a delta has no lobe to fit")?;
+    Ok(Box::new(Matrix { sweep, roles: spec.roles(), parts: spec.each(part)? }))
 }
 
 /// Which fit a channel is taken from; an albedo comes with either.
@@ -174,11 +191,12 @@ impl Baker for Matrix {
             }
             let fitted = ltc_fit::fit(&*model, view, wanted, |f| {
                 // NaN is not content
-                self.parts.iter().filter(|p| mine(**p)).all(|p| channel(*p, f).1 <= tolerance)
+                self.parts.iter().filter(|p| mine(**p)).all(|p| channel(*p, f).spread <= tolerance)
             })?;
             e.evaluations = e.evaluations.saturating_add(fitted.evaluations);
             for (i, part) in self.parts.iter().enumerate().filter(|(_, p)| mine(**p)) {
-                (e.value[i], e.error[i]) = channel(*part, &fitted);
+                let of = channel(*part, &fitted);
+                (e.value[i], e.error[i]) = (of.value, of.error);
             }
         }
         finite(e, self.parts.len())
@@ -245,22 +263,32 @@ pub fn stored(roles: &[Role], values: &[f64]) -> Option<Inverse> {
     Some(Inverse { m11: a, m13: b, m22: a, m31: 0.0, m33: 1.0 })
 }
 
-/// Value and error of a channel.
-fn channel(part: Part, fitted: &Fitted) -> (f64, f64) {
+/// A channel of a fit.
+struct Value {
+    value: f64,
+    /// Estimate: of a matrix entry that of the residual of its lobe, which is what the table promises.
+    error: f64,
+    /// What the value itself still moves by from level to level: what the fit tries to bring below the tolerance.
+    spread: f64,
+}
+
+fn channel(part: Part, fitted: &Fitted) -> Value {
     let (m, fit, error) = (&fitted.fit.inverse, &fitted.fit, &fitted.error);
+    let entry = |value: f64, spread: f64| Value { value, error: error.l3, spread };
     // over m33, an error of m33 counts too
-    let over_m33 = |v: f64| (v / m.m33, error.entries * (1.0 + (v / m.m33).abs()) / m.m33.abs());
+    let over_m33 = |v: f64| entry(v / m.m33, error.entries * (1.0 + (v / m.m33).abs()) / m.m33.abs());
+    let plain = |value: f64, error: f64| Value { value, error, spread: error };
     match part {
-        Part::Entry(Entry::M11) => (m.m11, error.entries),
-        Part::Entry(Entry::M31) => (m.m31, error.entries),
-        Part::Entry(Entry::M13) => (m.m13, error.entries),
-        Part::Entry(Entry::M33) => (m.m33, error.entries),
+        Part::Entry(Entry::M11) => entry(m.m11, error.entries),
+        Part::Entry(Entry::M31) => entry(m.m31, error.entries),
+        Part::Entry(Entry::M13) => entry(m.m13, error.entries),
+        Part::Entry(Entry::M33) => entry(m.m33, error.entries),
         Part::Entry(Entry::Z11) => over_m33(m.m11),
         Part::Entry(Entry::Z31) => over_m33(m.m31),
         Part::Entry(Entry::Z22 | Entry::A) => over_m33(m.m22),
         Part::Entry(Entry::Z13 | Entry::B) => over_m33(m.m13),
-        Part::Distance(_, Distance::Cubic) => (fit.l3, error.l3),
-        Part::Distance(_, Distance::Variation) => (fit.variation, error.variation),
-        Part::Albedo => (fit.albedo, error.albedo),
+        Part::Distance(_, Distance::Cubic) => plain(fit.l3, error.l3),
+        Part::Distance(_, Distance::Variation) => plain(fit.variation, error.variation),
+        Part::Albedo => plain(fit.albedo, error.albedo),
     }
 }

@@ -1,7 +1,7 @@
 //! Masking G1 of a rough surface over the cosine and the width.
 
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
@@ -51,11 +51,13 @@ pub static INFO: TableInfo = TableInfo {
     params: &[DISTRIBUTION],
     laws: &["finite", "range", "monotone", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "G1 falls to 0 at the horizon on the scale mu ~ alpha: couple the axis of mu to alpha, as the default axes do.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
     axes(&["mu"], 64, 64, [0.01, 1.0])
 }
 

@@ -54,7 +54,9 @@ pub static INFO: TableInfo = TableInfo {
         Param::number("blue", "c_b", "factor of the blue channel", [0.0, 1.0], Preset::Value(1.0)),
     ],
     laws: &["finite", "range", "reciprocity", "honest"],
-    axes: default_axes,
+    axes: |_| default_axes(),
+    least_tolerance: |_| 0.0,
+    blended: false,
     notes: "Isotropic and reciprocal models only. The container `merl:float` takes exactly the default axes. A mirror-like lobe is narrower than the first \
         cells of theta_h (0.011 degrees wide) only below alpha 1e-4.",
     bind,

@@ -7,6 +7,7 @@ pub mod average_albedo;
 pub mod beer_lambert;
 pub mod blackbody;
 pub mod compensation;
+pub mod default_axes;
 pub mod dfg;
 pub mod diffusion_kernel;
 pub mod diffusion_profile;
@@ -51,6 +52,7 @@ use crate::grid::{Axis, Channel, Table, table::named};
 use crate::integrate::Estimate;
 use crate::math::figures::exact;
 use crate::models::Param;
+pub use default_axes::Setting;
 pub use role::Role;
 pub use selection::Selection;
 pub use source::Source;
@@ -263,8 +265,14 @@ pub struct TableInfo {
     pub params: &'static [Param],
     /// Laws checked on every bake, by id.
     pub laws: &'static [&'static str],
-    /// Axes if the recipe gives none.
-    pub axes: fn() -> Vec<Axis>,
+    /// Axes if the recipe gives none, for the channels and for the model that the kind takes by itself: those that read best.
+    /// [`TableInfo::default_axes`] makes them fit other models.
+    pub axes: fn(&Setting<'_>) -> Vec<Axis>,
+    /// The least tolerance that a table has by default, whatever its outputs could hold: what its rule reaches everywhere on the
+    /// default axes. 0 where that is any.
+    pub least_tolerance: fn(&Setting<'_>) -> f64,
+    /// Is it read between its texels? If not, the error of that is not measured unless the recipe asks for it.
+    pub blended: bool,
     /// What to know before using it.
     pub notes: &'static str,
     /// Binds a resolved spec.

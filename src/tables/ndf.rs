@@ -1,10 +1,11 @@
 //! The microfacet distribution over the cosine of the microfacet normal and the width.
 
+use super::default_axes::axis;
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
-use crate::grid::{Axis, Quantity, Texel, Warp};
+use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::Param;
 use crate::terms::smith::Ndf as _;
@@ -49,19 +50,19 @@ pub static INFO: TableInfo = TableInfo {
     params: &[Param::choice("distribution", "which distribution", &["ggx", "beckmann"])],
     laws: &["finite", "range", "normalised", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "The peak has the width alpha: spread mu_m with `one-minus-power` (fine near mu_m = 1). At alpha -> 0 no fixed axis resolves it. \
         The relative form of Beckmann reaches 4 / e = 1.47 at alpha = 1, off the normal.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
-    let axis = |id: &str, domain: [f64; 2], warp| {
-        Quantity::find(id).map(|q| Axis::new(q, 128, Texel::Endpoint).over(domain).warped(warp))
-    };
-    [axis("mu_m", [0.0, 1.0], Warp::OneMinusPower(0.25)), axis("roughness", [0.05, 1.0], Warp::Linear)]
-        .into_iter()
-        .flatten()
-        .collect()
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
+    let axes = [
+        axis("mu_m", 128, [0.0, 1.0], Warp::OneMinusPower(0.2)),
+        axis("roughness", 128, [0.05, 1.0], Warp::Power(0.5)),
+    ];
+    axes.into_iter().flatten().collect()
 }
 
 struct Ndf {

@@ -1,10 +1,11 @@
 //! Phase functions over the angle of deflection.
 
+use super::default_axes::axis;
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
-use crate::grid::{Axis, Quantity, Texel};
+use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::{Param, Params, Preset};
 use crate::terms::phase;
@@ -74,13 +75,16 @@ pub static INFO: TableInfo = TableInfo {
     params: PARAMS,
     laws: &["finite", "range", "total", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "theta is the angle between the directions of travel: 0 is forward. Some renderers pass the cosine of two directions that both point away, \
         which has the other sign. Axes: deflection, and g.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
-    Quantity::find("deflection").map(|q| Axis::new(q, 256, Texel::Endpoint)).into_iter().collect()
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
+    // forward peaks are narrow
+    axis("deflection", 256, [0.0, std::f64::consts::PI], Warp::Power(0.25)).into_iter().collect()
 }
 
 /// A phase function with its parameters.

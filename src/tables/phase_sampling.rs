@@ -1,8 +1,11 @@
 //! Angles with the density of a phase function: the inverse of its cumulative distribution.
 
+use super::default_axes::axis;
 use super::phase_function::{PARAMS, Phase, SOURCES};
-use super::{Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Spec, TableInfo, TexelError};
-use crate::grid::{Axis, Quantity, Texel};
+use super::{
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Spec, TableInfo, TexelError,
+};
+use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::Params;
 use std::f64::consts::{PI, TAU};
@@ -41,12 +44,15 @@ pub static INFO: TableInfo = TableInfo {
     params: PARAMS,
     laws: &["range", "monotone", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "u = 1 is forward. Axes: u, and g.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
-    Quantity::find("u").map(|q| Axis::new(q, 256, Texel::Endpoint)).into_iter().collect()
+fn default_axes(setting: &Setting<'_>) -> Vec<Axis> {
+    let power = if setting.layout.id == "angle" { 0.5 } else { 0.25 };
+    axis("u", 256, [0.0, 1.0], Warp::Power(power)).into_iter().collect()
 }
 
 struct Table {

@@ -19,7 +19,7 @@
 use super::profile::{self, Profile, Rgb};
 use super::role::Band;
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
@@ -53,6 +53,8 @@ pub static INFO: TableInfo = TableInfo {
     params: &PARAMS,
     laws: &["finite", "range", "total", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "The row of curvature 0 is clamp(N.L) exactly. Penner's axes: ndotl from -1 to 1, curvature 1/r in 1/mm; lengths in mm. \
         Profile burley needs over = sphere: on a ring its 1/r makes both integrals diverge.",
     bind,
@@ -71,7 +73,7 @@ static SOURCES: [Source; 2 + profile::SOURCES.len()] = profile::with_sources([
     Source::new(cite::PENNER_2011, "the idea, here over the sphere").when("over", &["sphere"]),
 ]);
 
-fn default_axes() -> Vec<Axis> {
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
     // odd, so that the terminator, a kink where nothing is curved, lies on a texel: four times better than 128
     let axis =
         |id: &str, len, domain| Quantity::find(id).map(|q| Axis::new(q, len, Texel::Endpoint).over(domain));

@@ -6,7 +6,8 @@
 use super::ltc_fit::{self, Sheared};
 use super::role::Entry;
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError, finite,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
+    finite,
 };
 use crate::cite;
 use crate::grid::provenance::{Residual, Spread};
@@ -87,6 +88,8 @@ pub static INFO: TableInfo = TableInfo {
     params: &[Param::number("r", "r", "roughness of the fibres, sigma = r^2", RANGE, Preset::Value(0.5))],
     laws: &["finite", "range", "cross-check"],
     axes: default_axes,
+    least_tolerance: |_| 2e-3,
+    blended: true,
     notes: "Unit depth, density and albedo, black ground. The authors' table stores zeros for a and b below R = 3e-6; here they are \
         fitted down to R = 1e-7, and below that to light that was scattered once. Along the normal the lobe is round. Errors are those of \
         the best lobe: how well it fits is in the channel sheen.l3. Each roughness is a layer that is solved once, for all views.",
@@ -96,7 +99,7 @@ pub static INFO: TableInfo = TableInfo {
 /// Range of the roughness.
 const RANGE: [f64; 2] = [0.01, 1.0];
 
-fn default_axes() -> Vec<Axis> {
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
     let axis = |id| {
         let q = Quantity::find(id)?;
         Some(Axis { clamp: Some(RANGE), ..Axis::new(q, 32, Texel::Endpoint) })

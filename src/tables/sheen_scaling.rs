@@ -3,14 +3,15 @@
 //! `f = f_sheen + min(scaling(mu_o), scaling(mu_i)) f_base`, `scaling = 1 - sheen E(mu)`: the albedo scaling of the glTF sheen
 //! extension, with `sheen` the largest component of the colour. A shader that has the colour reads E and forms it itself.
 
+use super::default_axes::axis;
 use super::integral::{Functional, integrate};
 use super::role::{Light, Lobe, Side};
 use super::sweep::Sweep;
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
-use crate::grid::{Axis, Texel};
+use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::{Param, Preset};
 
@@ -54,20 +55,18 @@ pub static INFO: TableInfo = TableInfo {
     )],
     laws: &["finite", "range", "honest"],
     axes: default_axes,
-    notes: "Axis roughness is glTF's (Charlie's r = roughness^2), axis alpha or r is Charlie's own. The model need not be reciprocal: E belongs to the view. By default roughness is held at 0.27 \
-        (r = 0.073) and above, the clamp of productions: below it E exceeds 1 at grazing, and a scaled base would be negative.",
+    least_tolerance: |_| 0.0,
+    blended: true,
+    notes: "Axis sheen_roughness is glTF's; roughness, r or alpha of Charlie is its square. The model need not be reciprocal: E belongs to the view. \
+        By default the axis begins at 0.27 (r = 0.073), the clamp of productions, and mu at 1e-3: below them E exceeds 1, and a scaled \
+        base would be negative.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
-    let mut axes = super::dfg::view_and_roughness(32);
-    for axis in &mut axes {
-        axis.texel = Texel::Center;
-        if axis.quantity.id == "roughness" {
-            axis.clamp = Some([0.27, 1.0]);
-        }
-    }
-    axes
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
+    let mu = axis("mu", 64, [1e-3, 1.0], Warp::Power(0.25));
+    let roughness = axis("sheen_roughness", 32, [0.27, 1.0], Warp::Linear);
+    [mu, roughness].into_iter().flatten().collect()
 }
 
 struct Scaling {

@@ -3,13 +3,14 @@
 //! Light that enters everywhere on the far side of a slab of thickness d, and spreads by the profile over the distance
 //! `sqrt(r^2 + d^2)`: `T(d) = 2 pi int R(sqrt(r^2 + d^2)) r dr`, which is the part of the profile beyond radius d.
 
+use super::default_axes::axis;
 use super::profile::{self, Profile};
 use super::role::Band;
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
-use crate::grid::{Axis, Quantity, Texel, Warp};
+use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use std::f64::consts::SQRT_2;
 
@@ -49,6 +50,8 @@ pub static INFO: TableInfo = TableInfo {
     params: profile::PARAMS,
     laws: &["finite", "range", "monotone", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "The two layouts differ by a factor 2 in the exponent and are not interchangeable. Other profiles than Gaussians follow the same \
         reasoning: the part beyond d.",
     bind,
@@ -64,9 +67,8 @@ static SOURCES: [Source; 2 + profile::SOURCES.len()] = profile::with_sources([
     Source::new(cite::JIMENEZ_2010, "the transmittance profile (layout jimenez)").of(is_stretched),
 ]);
 
-fn default_axes() -> Vec<Axis> {
-    let axis = |q| Axis::new(q, 256, Texel::Endpoint).over([0.0, 8.0]).warped(Warp::Power(0.5));
-    Quantity::find("thickness").map(axis).into_iter().collect()
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
+    axis("thickness", 256, [0.0, 8.0], Warp::Power(0.25)).into_iter().collect()
 }
 
 struct Table {

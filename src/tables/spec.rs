@@ -1,7 +1,8 @@
 //! A table with everything resolved: kind, layout, model, parameters, axes.
 
-use super::{Baker, ModelUse, Selection, TableInfo};
-use crate::grid::{Axis, Channel, Grid, GridError};
+use super::{Baker, ModelUse, Selection, Setting, TableInfo, default_axes};
+use crate::grid::quantity::QUANTITIES;
+use crate::grid::{Axis, Channel, Grid, GridError, Quantity};
 use crate::models::{self, ModelInfo, Param, ParamError, Params};
 use serde_json::{Map, Value as Json};
 
@@ -139,6 +140,16 @@ pub enum BindError {
         /// What can be swept.
         allowed: String,
     },
+    /// Two axes that sweep one parameter by two of its names.
+    #[error("table {kind}: axes {} and {} both sweep `{param}`", .axes[0], .axes[1])]
+    OneParam {
+        /// Table kind.
+        kind: &'static str,
+        /// The axes.
+        axes: [&'static str; 2],
+        /// The parameter.
+        param: &'static str,
+    },
     /// A parameter that is both fixed and swept.
     #[error("table {kind}: `{key}` is both a fixed parameter and an axis")]
     Both {
@@ -164,8 +175,18 @@ impl Request {
         let kind = super::find(&self.kind)
             .ok_or_else(|| unknown("table", &self.kind, super::TABLES.iter().map(|t| t.id)))?;
         let layout = Selection::resolve(kind, self.layout.as_deref(), self.channels.as_deref())?;
-        let grid = Grid::new(self.axes.clone().unwrap_or_else(kind.axes))?;
         let (model, model_params, table_params) = self.split_params(kind)?;
+        let info = model.map(|(info, _)| info);
+        let setting = Setting { layout: &layout, model: info };
+        let axes = self.axes.clone().unwrap_or_else(|| kind.default_axes(setting));
+        if let Some(info) = info.filter(|_| self.axes.is_none() && axes.is_empty()) {
+            let why =
+                "has no number that an axis measures, so it is one value here: `brdfbake albedo` prints it";
+            return Err(BindError::Model { kind: kind.id, model: info.id.to_owned(), why });
+        }
+        // a name means on an axis what it means in the parameters
+        let axes = axes.into_iter().map(|a| info.map_or(a.clone(), |info| default_axes::of_model(a, info)));
+        let grid = Grid::new(axes.collect())?;
         let params = Params::resolve_over(kind.id, kind.params, &Map::new(), &table_params)?;
         let model = match model {
             Some((info, implied)) => {
@@ -219,7 +240,7 @@ impl Spec {
         if let Some((info, params)) = &self.model {
             // an axis may go by another spelling of the parameter
             for id in &mut ids {
-                *id = info.param(id).map_or(*id, |p| p.id);
+                *id = info.measured(id).map_or(*id, |p| p.id);
             }
             for leader in ids.clone() {
                 let follows = |id: &&str| (params.number(id) - params.number(leader)).abs() == 0.0;
@@ -307,20 +328,15 @@ fn check_axes(
         .flat_map(|(info, _)| info.params)
         .chain(kind.params)
         .filter(|p| matches!(p.kind, models::Kind::Number { .. }))
+        // where the Fresnel factor is split off, F is 1
+        .filter(|p| !(matches!(kind.model, ModelUse::Split(_)) && ["f0", "f90"].contains(&p.id)))
         .collect();
     // a view has an azimuth where it has a cosine
     let azimuth: &[&str] = if model.is_some() && kind.coordinates.contains(&"mu") { &["phi"] } else { &[] };
     for (axis, base) in grid.axes().iter().zip(&bases) {
-        let number = numbers.iter().find(|p| p.is_called(base));
+        let number = numbers.iter().find(|p| p.is_measured_by(base));
         if !kind.coordinates.contains(base) && number.is_none() && !azimuth.contains(base) {
-            let allowed = kind
-                .coordinates
-                .iter()
-                .copied()
-                .chain(numbers.iter().map(|p| p.id))
-                .chain(azimuth.iter().copied())
-                .collect::<Vec<_>>()
-                .join(", ");
+            let allowed = sweepable(&[kind.coordinates, azimuth].concat(), &numbers);
             return Err(BindError::IdleAxis { kind: kind.id, axis: axis.quantity.id, allowed });
         }
         let same = |key: &&String| key.as_str() == *base || number.is_some_and(|p| p.is_called(key));
@@ -328,5 +344,26 @@ fn check_axes(
             return Err(BindError::Both { kind: kind.id, key: key.clone() });
         }
     }
+    for (i, axis) in grid.axes().iter().enumerate() {
+        let same = |p: &&&Param| p.is_measured_by(bases[i]);
+        let Some(param) = numbers.iter().find(same).filter(|_| !kind.coordinates.contains(&bases[i])) else {
+            continue;
+        };
+        if let Some(other) = bases[..i].iter().position(|b| param.is_measured_by(b)) {
+            let axes = [grid.axes()[other].quantity.id, axis.quantity.id];
+            return Err(BindError::OneParam { kind: kind.id, axes, param: param.id });
+        }
+    }
     Ok(())
+}
+
+/// The axes that there are for these base quantities and parameters, by the names that a recipe has for them.
+fn sweepable(bases: &[&str], numbers: &[&Param]) -> String {
+    let measures = |base: &str| bases.contains(&base) || numbers.iter().any(|p| p.is_measured_by(base));
+    let known = QUANTITIES.iter().filter(|q| {
+        measures(q.base_id())
+            || (Quantity::own(q.id).is_some() && numbers.iter().any(|p| p.is_measured_by(q.id)))
+    });
+    let ids: Vec<&str> = known.map(|q| q.id).collect();
+    if ids.is_empty() { "nothing".to_owned() } else { ids.join(", ") }
 }

@@ -37,7 +37,7 @@ impl Sweep {
                 "mu" => sweep.mu = Some(i),
                 "phi" => sweep.phi = Some(i),
                 // an axis that the model has no parameter for is one of the table kind
-                id => sweep.swept.extend(info.param(id).map(|p| (i, p.id))),
+                id => sweep.swept.extend(info.measured(id).map(|p| (i, p.id))),
             }
         }
         Ok(sweep)
@@ -108,6 +108,18 @@ impl Sweep {
             params.set("eta", 1.0 / params.number("eta"));
         }
         Ok((self.info.build)(&params)?)
+    }
+
+    /// Refuses a model that is a mirror with its fixed parameters, for tables that have no use for a delta.
+    ///
+    /// # Errors
+    /// [`BindError::Model`] with `why`; [`BindError::Param`] where the model refuses its fixed parameters.
+    pub fn refuse_mirrors(&self, kind: &'static str, why: &'static str) -> Result<(), BindError> {
+        let model = (self.info.build)(&self.params)?;
+        match model.mirror(1.0) {
+            Some(_) => Err(BindError::Model { kind, model: self.info.id.to_owned(), why }),
+            None => Ok(()),
+        }
     }
 
     /// Does light cross the surface?

@@ -1,12 +1,13 @@
 //! Iridescence: the colour of a surface under a thin film, over angle and thickness of the film.
 
+use super::default_axes::axis;
 use super::role::Band;
 use super::spectrum::{self, Spectrum};
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
-use crate::grid::{Axis, Quantity, Texel};
+use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::{Param, Preset};
 use crate::terms::thin_film::{self, Film};
@@ -64,15 +65,16 @@ pub static INFO: TableInfo = TableInfo {
     ],
     laws: &["range", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "Vacuum above, thickness in nm. Colours may leave [0, 1] a little: renderers clamp. Defaults: water on glass; soap n2 1.33 n3 1; \
         oil on water n2 1.5 n3 1.33; anodised titanium n2 2.5 n3 2.5 k3 3.4. Fringes of films above 2 um are finer than most grids.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
-    let axis =
-        |id: &str, len, domain| Quantity::find(id).map(|q| Axis::new(q, len, Texel::Endpoint).over(domain));
-    [axis("mu", 64, [0.0, 1.0]), axis("film", 256, [0.0, 1200.0])].into_iter().flatten().collect()
+fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
+    let axes = [axis("mu", 64, [0.0, 1.0], Warp::Power(0.5)), axis("film", 256, [0.0, 1200.0], Warp::Linear)];
+    axes.into_iter().flatten().collect()
 }
 
 struct Table {

@@ -2,10 +2,10 @@
 
 use super::masking::{DISTRIBUTION, SCHLICK, direction, schlick};
 use super::{
-    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Source, Spec, TableInfo, TexelError,
+    Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
-use crate::grid::Axis;
+use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::{Param, Preset};
 use crate::terms::schlick_masking;
@@ -54,15 +54,26 @@ pub static INFO: TableInfo = TableInfo {
     ],
     laws: &["finite", "range", "honest"],
     axes: default_axes,
+    least_tolerance: |_| 0.0,
+    blended: true,
     notes: "V is symmetric. Where both cosines are 0 the correlated form counts as 0: there is no reflection. Schlick's form is separable. \
         Axes: mu, mu_i and alpha or roughness.",
     bind,
 };
 
-fn default_axes() -> Vec<Axis> {
-    // where both cosines are 0 there is no value
-    let above = |a: Axis| if a.quantity.base_id() == "alpha" { a } else { a.over([0.01, 1.0]) };
-    super::masking::axes(&["mu", "mu_i"], 32, 16, [0.1, 1.0]).into_iter().map(above).collect()
+fn default_axes(setting: &Setting<'_>) -> Vec<Axis> {
+    let mut axes = super::masking::axes(&["mu", "mu_i"], 32, 16, [0.1, 1.0]);
+    if setting.layout.id != "g2" {
+        for axis in &mut axes {
+            if axis.quantity.base_id() == "alpha" {
+                axis.warp = Warp::Power(0.5);
+            } else {
+                // where both cosines are 0 there is no value
+                axis.domain = [0.01, 1.0];
+            }
+        }
+    }
+    axes
 }
 
 struct Table {

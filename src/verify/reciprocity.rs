@@ -29,6 +29,20 @@ const ROUNDINGS: f64 = 16.0;
 /// Values below this are rounding noise of a vanished tail.
 const NEGLIGIBLE: f64 = 1e-20;
 
+/// Values of a model for a pair of directions and for the same pair turned round, if they differ: the first such pair of a few.
+#[must_use]
+pub fn asymmetry(model: &dyn Brdf) -> Option<(f64, f64)> {
+    let mut seeds = seeds::Seeds::new(0x2ec1);
+    (0..64).find_map(|_| {
+        let mut direction = || frame::spherical(libm::acos(seeds.unit().sqrt()), TAU * seeds.unit());
+        let (a, b) = (direction(), direction());
+        let (forth, back) = (model.eval(a, b), model.eval(b, a));
+        let scale = forth.abs().max(back.abs());
+        let same = (forth - back).abs() <= ROUNDING * scale + resolved(model, a, b);
+        (scale > NEGLIGIBLE && !same).then_some((forth, back))
+    })
+}
+
 fn check(case: &Case<'_>) -> Outcome {
     let lobes = Lobes::new(case.spec());
     let mut seeds = seeds::Seeds::new(0x2ec1);

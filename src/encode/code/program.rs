@@ -189,7 +189,7 @@ fn to_base(axis: &Axis, v: Expression) -> Result<Expression, EncodeError> {
     let one = || Expression::Number(1.0);
     match axis.quantity.id {
         id if id == axis.quantity.base_id() => Ok(v),
-        "roughness" => Ok(v.pow(2.0)),
+        "roughness" | "sheen_roughness" => Ok(v.pow(2.0)),
         "theta" => Ok(v.cos().max(0.0)),
         "f0_root4" => Ok(one().plus(v.clone().pow(2.0)).over(one().minus(v.pow(2.0)))),
         id => Err(EncodeError::Name { id: id.to_owned(), fault: "has no map to its base quantity in code" }),

@@ -1,0 +1,243 @@
+//! Everything that is listed bakes: every kind with every layout, every free channel and every model, from a recipe of kind, name
+//! and model alone; every preset; every engine. What cannot is refused when it is read, with the reason.
+//!
+//! The short form, on axes of a few texels, runs with the others. The whole one takes an hour:
+//! `cargo test --release --test listed -- --ignored --nocapture`.
+#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "test")]
+
+use brdfbake::encode::{self, Storage};
+use brdfbake::grid::{Axis, Grid};
+use brdfbake::models::MODELS;
+use brdfbake::pipeline::{self, PipelineError, Settings, Silent};
+use brdfbake::recipe::{ENGINES, PRESETS, Plan, PlannedTable, TableRequest};
+use brdfbake::tables::driver::{self, Options};
+use brdfbake::tables::spec::Request;
+use brdfbake::tables::{Bound, Mix, ModelUse, TABLES};
+use brdfbake::verify;
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// What becomes of a recipe.
+#[derive(Debug, Clone, PartialEq)]
+enum End {
+    Baked,
+    /// When it is read.
+    Refused(String),
+    /// Too late.
+    Failed(String),
+}
+
+/// Words of which a refusal has one: each is a reason that a person can act on.
+const REASONS: &[&str] = &[
+    "does not transmit; all its light is in channel",
+    "has no parameter eta, so it has no inside",
+    "has a Fresnel factor that cannot be split off; use one with",
+    "is no interface; use one that transmits, such as",
+    "is a mirror: ",
+    "has no number that an axis measures, so it is one value here",
+    "is not reciprocal: ",
+    "is anisotropic with these parameters: ",
+    "has no alpha, so that every row",
+    "does not keep law",
+    "has no value on these axes: ",
+    "overflows half: the largest is 65504",
+];
+
+/// Axes of three texels, of two where there are more than two axes; none of an axis that counts something is left out.
+fn short(bound: Bound) -> Bound {
+    let mut spec = bound.spec;
+    let len = if spec.grid.axes().len() > 2 { 2 } else { 3 };
+    let counts = |a: &Axis| a.quantity.id == "gaussian";
+    let cut = |a: &Axis| Axis { len: if counts(a) { a.len } else { a.len.min(len) }, ..a.clone() };
+    spec.grid = Grid::new(spec.grid.axes().iter().map(cut).collect()).unwrap();
+    let baker = (spec.kind.bind)(&spec).unwrap();
+    Bound { spec, baker }
+}
+
+/// Every kind x layout or free channel x model (none: the kind's own), with a name for each. A channel that is a layout by itself
+/// is that layout.
+fn minimal() -> Vec<(String, Request)> {
+    let mut all = Vec::new();
+    for kind in TABLES {
+        let models: Vec<Option<&str>> = match kind.model {
+            ModelUse::None => vec![None],
+            ModelUse::Any(own) | ModelUse::Split(own) => {
+                let others = MODELS.iter().map(|m| m.id).filter(|id| *id != own);
+                [None].into_iter().chain(others.map(Some)).collect()
+            }
+        };
+        let alone = |id: &str| kind.layouts.iter().any(|l| l.channels.len() == 1 && l.channels[0].id == id);
+        for model in models {
+            let request =
+                Request { kind: kind.id.to_owned(), model: model.map(str::to_owned), ..Request::default() };
+            let name = format!("{} {}", kind.id, model.unwrap_or("-"));
+            for layout in kind.layouts {
+                let request = Request { layout: Some(layout.id.to_owned()), ..request.clone() };
+                all.push((format!("{name} layout {}", layout.id), request));
+            }
+            if matches!(kind.mix, Mix::Free(_)) {
+                for channel in kind.pool().into_iter().filter(|c| !alone(c.id)) {
+                    let request = Request { channels: Some(vec![channel.id.to_owned()]), ..request.clone() };
+                    all.push((format!("{name} channel {}", channel.id), request));
+                }
+            }
+        }
+    }
+    all
+}
+
+/// Bakes a planned table, checks its laws and rounds it as its outputs do; writes nothing.
+fn bake(planned: &PlannedTable) -> End {
+    let cancel = Default::default();
+    let options = Options {
+        tolerance: planned.tolerance,
+        on_miss: planned.on_miss,
+        cancel: &cancel,
+        progress: &|_| {},
+    };
+    let table = match driver::bake(&planned.bound, options) {
+        Ok(table) => table,
+        Err(e) => return End::Failed(e.to_string()),
+    };
+    let verified = match verify::check(&planned.bound, table, planned.tolerance, &planned.waivers) {
+        Ok((verified, _)) => verified,
+        Err(findings) => {
+            return End::Failed(findings.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "));
+        }
+    };
+    for output in &planned.outputs {
+        let storage = Storage::find(&output.storage).unwrap();
+        if let Err(e) = encode::quantise_table(verified.table(), storage) {
+            return End::Failed(format!("{output}: {e}"));
+        }
+    }
+    End::Baked
+}
+
+/// Bakes what a request asks for; unless in `full`, on short axes.
+fn end(request: Request, full: bool) -> End {
+    let mut plan = match Plan::from_requests("minimal", vec![TableRequest::new("t", request)]) {
+        Ok(plan) => plan,
+        Err(e) => return End::Refused(e.to_string()),
+    };
+    let mut planned = plan.tables.remove(0);
+    if !full {
+        planned.bound = short(planned.bound);
+    }
+    bake(&planned)
+}
+
+/// Does the work of two threads at a time, and collects what became of each job.
+fn all<J: Clone + Send + Sync>(
+    jobs: &[(String, J)],
+    work: impl Fn(J) -> End + Sync,
+) -> BTreeMap<String, End> {
+    let (next, ends) = (AtomicUsize::new(0), Mutex::new(BTreeMap::new()));
+    let one = || {
+        while let Some((name, job)) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let start = std::time::Instant::now();
+            let end = work(job.clone());
+            if std::env::var_os("LISTED_TIMES").is_some() {
+                eprintln!("{name}: {:.2} s {end:?}", start.elapsed().as_secs_f64());
+            }
+            ends.lock().unwrap().insert(name.clone(), end);
+        }
+    };
+    std::thread::scope(|s| {
+        s.spawn(one);
+        s.spawn(one);
+    });
+    ends.into_inner().unwrap()
+}
+
+fn check_minimal(full: bool) {
+    let only = std::env::var("LISTED_ONLY").unwrap_or_default();
+    let jobs: Vec<_> =
+        minimal().into_iter().filter(|(n, _)| only.split_whitespace().all(|w| n.contains(w))).collect();
+    let ends = all(&jobs, |request| end(request, full));
+    let failed: Vec<String> = ends
+        .iter()
+        .filter_map(|(name, end)| match end {
+            End::Failed(why) => Some(format!("{name}: {why}")),
+            End::Refused(why) if !REASONS.iter().any(|r| why.contains(r)) => {
+                Some(format!("{name}: refused without a reason that is known: {why}"))
+            }
+            _ => None,
+        })
+        .collect();
+    assert!(failed.is_empty(), "{} of {}:\n{}", failed.len(), ends.len(), failed.join("\n"));
+    if only.is_empty() {
+        for kind in TABLES {
+            for layout in kind.layouts {
+                let of = |(name, end): (&String, &End)| {
+                    *end == End::Baked
+                        && name.starts_with(&format!("{} ", kind.id))
+                        && name.ends_with(&format!(" layout {}", layout.id))
+                };
+                assert!(ends.iter().any(of), "{} {}: no model bakes", kind.id, layout.id);
+            }
+        }
+    }
+}
+
+/// Bakes a plan as the command does, into a folder of its own.
+fn run(mut plan: Plan, full: bool) -> End {
+    if !full {
+        plan.tables = plan
+            .tables
+            .into_iter()
+            .map(|mut t| {
+                t.bound = short(t.bound);
+                t
+            })
+            .collect();
+    }
+    let out = tempfile::tempdir().unwrap();
+    let settings = Settings { jobs: Some(1), ..Settings::new(out.path()) };
+    match pipeline::run(&plan, &settings, &Default::default(), &Silent) {
+        Ok(_) => End::Baked,
+        Err(PipelineError::Laws(findings)) => End::Failed(format!("{findings:?}")),
+        Err(e) => End::Failed(e.to_string()),
+    }
+}
+
+fn check_plans(full: bool) {
+    let only = std::env::var("LISTED_ONLY").unwrap_or_default();
+    let presets = PRESETS.iter().map(|p| (format!("preset {}", p.id), (true, p.id)));
+    let engines = ENGINES.iter().map(|e| (format!("engine {}", e.id), (false, e.id)));
+    let jobs: Vec<_> =
+        presets.chain(engines).filter(|(n, _)| only.split_whitespace().all(|w| n.contains(w))).collect();
+    let ends = all(&jobs, |(preset, id)| {
+        let plan = if preset {
+            brdfbake::recipe::preset(id).unwrap().plan()
+        } else {
+            brdfbake::recipe::engine(id).unwrap().plan()
+        };
+        run(plan.unwrap(), full)
+    });
+    let failed: Vec<_> = ends.iter().filter(|(_, end)| **end != End::Baked).collect();
+    assert!(failed.is_empty(), "{failed:#?}");
+}
+
+#[test]
+fn minimal_recipes_bake_or_are_refused_when_read() {
+    check_minimal(false);
+}
+
+#[test]
+fn presets_and_engines_bake_on_short_axes() {
+    check_plans(false);
+}
+
+#[test]
+#[ignore = "an hour: every minimal recipe in full"]
+fn minimal_recipes_bake_in_full() {
+    check_minimal(true);
+}
+
+#[test]
+#[ignore = "minutes: every preset and engine in full"]
+fn presets_and_engines_bake_in_full() {
+    check_plans(true);
+}
