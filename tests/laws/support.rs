@@ -28,16 +28,16 @@ impl Pair {
         let ids: Vec<&str> = channels.map(|c| c.id).chain(self.channel).collect();
         let crosses = |id: &&str| id.starts_with('t') || id.ends_with(".inside");
         let glass = matches!(self.kind.model, ModelUse::Any("ggx")) && ids.iter().any(crosses);
-        Request {
+        let request = Request {
             kind: self.kind.id.to_owned(),
             layout: self.layout.map(str::to_owned),
             channels: self.channel.map(|c| vec![c.to_owned()]),
             model: glass.then(|| "ggx-glass".to_owned()),
-            axes: Some((self.kind.axes)().into_iter().map(short).collect()),
             ..Request::default()
-        }
-        .bind()
-        .unwrap_or_else(|e| panic!("{}: {e}", self.name()))
+        };
+        let bind = |request: &Request| request.bind().unwrap_or_else(|e| panic!("{}: {e}", self.name()));
+        let axes = bind(&request).spec.grid.axes().iter().cloned().map(short).collect();
+        bind(&Request { axes: Some(axes), ..request })
     }
 }
 
