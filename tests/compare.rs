@@ -228,7 +228,9 @@ fn files_are_written_whole_and_only_when_they_change() {
     let twice = [files("4"), files("5")].concat();
     assert!(matches!(write_all(&twice, &GO), Err(WriteError::Twice(p)) if p == path("x/one")));
     let folder = [files("4"), vec![(path("x/y"), vec![])]].concat();
-    assert!(matches!(write_all(&folder, &GO), Err(WriteError::NotAFile(p)) if p == path("x/y")));
+    assert!(
+        matches!(write_all(&folder, &GO), Err(WriteError::InTheWay { path: p, what: "a folder" }) if p == path("x/y"))
+    );
     // A file stands where a folder is needed.
     let below = [files("4"), vec![(path("x/one/three"), vec![])]].concat();
     assert!(matches!(write_all(&below, &GO), Err(WriteError::Folder { .. })));
@@ -254,6 +256,24 @@ fn temporary_files_of_killed_processes_are_swept() {
     drop(writing);
     assert_eq!(sweep(root.path()).unwrap(), 1);
     assert!(!alive.exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn who_has_a_file_open_keeps_what_it_opened() {
+    use std::io::Read;
+    let root = tempfile::tempdir().unwrap();
+    let path = root.path().join("file");
+    write_all(&[(path.clone(), b"old".to_vec())], &GO).unwrap();
+    let mut reader = fs::File::open(&path).unwrap();
+    write_all(&[(path.clone(), b"new".to_vec())], &GO).unwrap();
+    let mut text = String::new();
+    reader.read_to_string(&mut text).unwrap();
+    assert_eq!(
+        (text.as_str(), fs::read(&path).unwrap()),
+        ("old", b"new".to_vec()),
+        "replaced, not overwritten"
+    );
 }
 
 #[cfg(unix)]

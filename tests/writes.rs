@@ -289,3 +289,44 @@ fn threads_are_bounded_however_they_are_asked_for() {
         assert_eq!(o.status.code(), Some(0), "{}", err(&o));
     }
 }
+
+#[test]
+fn a_plan_that_does_not_fit_in_memory_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let recipe = folder.path().join("large.toml");
+    let table = |i: usize| {
+        format!(
+            "[[table]]\nkind = 'fresnel-schlick'\nname = 't{i}'\nreconstruction = 'off'\noutputs = ['csv:double']\n\
+             [[table.axis]]\nid = 'mu'\nlength = 8192\n[[table.axis]]\nid = 'f0'\nlength = 8192\n"
+        )
+    };
+    fs::write(&recipe, format!("name = 'x'\n{}", (0..4).map(table).collect::<String>())).unwrap();
+    let target = folder.path().join("out");
+    for more in [&["--dry-run"][..], &[], &["--memory", "2GiB"]] {
+        let o = brdfbake(&[&["bake", text(&recipe), "-o", text(&target)], more].concat());
+        assert_eq!(o.status.code(), Some(5), "{}", err(&o));
+        for part in ["table t0 takes up to", "of memory", "shorter axes", "--memory"] {
+            assert!(err(&o).contains(part), "{part}: {}", err(&o));
+        }
+        assert!(!target.exists() && out(&o).is_empty());
+    }
+    // allowed, it is planned
+    let o = brdfbake(&["bake", text(&recipe), "--dry-run", "--memory", "1TB", "-o", text(&target)]);
+    assert_eq!(o.status.code(), Some(0), "{}", err(&o));
+    assert_eq!(brdfbake(&["bake", A, "--memory", "lots"]).status.code(), Some(2));
+    assert_eq!(brdfbake(&["bake", A, "-q", "--memory", "100kB", "-o", text(&target)]).status.code(), Some(5));
+}
+
+#[test]
+fn two_outputs_of_one_name_are_refused_before_anything_is_baked() {
+    let folder = tempfile::tempdir().unwrap();
+    let recipe = folder.path().join("x.toml");
+    let one = "[[table]]\nkind = 'fresnel-schlick'\nname = 'x'\noutputs = ['exr:half', 'exr:float']\n";
+    let two = "[[table]]\nkind = 'fresnel-schlick'\nname = 'y'\nfile = 'X.Half.exr'\n";
+    fs::write(&recipe, format!("name = 'x'\n{one}{two}")).unwrap();
+    for more in [&["--dry-run"][..], &[]] {
+        let o = brdfbake(&[&["bake", text(&recipe), "-o", text(&folder.path().join("out"))], more].concat());
+        assert_eq!(o.status.code(), Some(3), "{}", err(&o));
+        assert!(err(&o).contains("x.half.exr and X.Half.exr"), "{}", err(&o));
+    }
+}

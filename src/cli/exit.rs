@@ -140,7 +140,9 @@ impl From<PipelineError> for Failure {
             PipelineError::Encode { error, .. } => Exit::of_encode(error),
             PipelineError::Fit { .. } | PipelineError::SizeGrid { .. } => Exit::Input,
             PipelineError::Jobs { .. } => Exit::Usage,
-            PipelineError::Files(_) | PipelineError::Threads { .. } => Exit::Io,
+            PipelineError::Files(_) | PipelineError::Memory { .. } | PipelineError::Threads { .. } => {
+                Exit::Io
+            }
             _ => Exit::Internal,
         };
         if exit == Exit::Interrupted {
@@ -160,8 +162,15 @@ impl From<PipelineError> for Failure {
                 "\n  To bake it all the same, add `waive = [{ law = \"...\", reason = \"...\" }]` to the table; the file will say so.",
             );
         }
-        if matches!(error, PipelineError::Files(TransactionError::Busy { .. })) {
-            message.push_str(" (--lock-timeout SECONDS waits longer)");
+        match &error {
+            PipelineError::Files(TransactionError::Busy { .. }) => {
+                message.push_str(" (--lock-timeout SECONDS waits longer)");
+            }
+            PipelineError::Memory { needed, .. } => {
+                let enough = needed.div_ceil(1_000_000_000);
+                message.push_str(&format!(" (--memory {enough}GB)"));
+            }
+            _ => {}
         }
         Failure { message, exit }
     }

@@ -1,6 +1,7 @@
-//! What a run may use: threads and time. The same options for every verb that bakes.
+//! What a run may use: threads, time, memory. The same options for every verb that bakes.
 
 use crate::pipeline::Settings;
+use bytesize::ByteSize;
 use std::path::Path;
 use std::time::Duration;
 
@@ -13,6 +14,10 @@ pub struct Limits {
     /// How long to wait for another run that writes into the output folder.
     #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = seconds)]
     lock_timeout: Duration,
+    /// Most memory that the bake may take, such as 512MB or 8GiB; 4GiB if not given, or what the machine has available if that
+    /// is less. What does not fit is refused before it is baked.
+    #[arg(long, value_name = "SIZE")]
+    memory: Option<ByteSize>,
 }
 
 impl Limits {
@@ -25,7 +30,8 @@ impl Limits {
     /// Settings of a run into a folder.
     #[must_use]
     pub fn settings(&self, out: &Path) -> Settings {
-        Settings { jobs: self.jobs(), lock_timeout: self.lock_timeout, ..Settings::new(out) }
+        let memory = self.memory.map(|m| m.as_u64());
+        Settings { jobs: self.jobs(), lock_timeout: self.lock_timeout, memory, ..Settings::new(out) }
     }
 }
 

@@ -41,12 +41,14 @@ pub enum WriteError {
         /// The path.
         PathBuf,
     ),
-    /// The target is a folder, or has no file name.
-    #[error("{0} cannot be written: it is not the path of a file")]
-    NotAFile(
+    /// Something that is no file has the name, or the path has none.
+    #[error("{path} cannot be written: there is {what} of this name")]
+    InTheWay {
         /// The path.
-        PathBuf,
-    ),
+        path: PathBuf,
+        /// What is there: `a folder`.
+        what: &'static str,
+    },
     /// A folder could not be made, or nothing can be written into it.
     #[error("cannot write into folder {path}: {source}")]
     Folder {
@@ -116,10 +118,37 @@ fn check_targets(files: &[(PathBuf, Vec<u8>)]) -> Result<(), WriteError> {
     if let Some(pair) = paths.windows(2).find(|pair| pair[0] == pair[1]) {
         return Err(WriteError::Twice(pair[0].to_owned()));
     }
-    match paths.iter().find(|p| p.file_name().is_none() || p.is_dir()) {
-        Some(path) => Err(WriteError::NotAFile((*path).to_owned())),
-        None => Ok(()),
+    for path in paths {
+        let found = match path.file_name() {
+            // what cannot be looked at is told when it is written
+            Some(_) => obstacle(path).unwrap_or_default(),
+            None => Some("no file"),
+        };
+        if let Some(what) = found {
+            return Err(WriteError::InTheWay { path: path.to_owned(), what });
+        }
     }
+    Ok(())
+}
+
+/// What keeps a file from being put under a name, if anything does. A link to a file does not: it is replaced, and what it leads to is
+/// left alone.
+///
+/// # Errors
+/// If the system does not tell what is there.
+pub fn obstacle(path: &Path) -> io::Result<Option<&'static str>> {
+    let found = match fs::symlink_metadata(path) {
+        Err(e) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&e.kind()) => return Ok(None),
+        found => found?,
+    };
+    Ok(match (found.is_symlink(), fs::metadata(path)) {
+        (true, Err(_)) => Some("a link that leads nowhere"),
+        (_, Ok(end)) if end.is_file() => None,
+        (true, Ok(end)) if end.is_dir() => Some("a link to a folder"),
+        (true, Ok(_)) => Some("a link to what is no file"),
+        (false, _) if found.is_dir() => Some("a folder"),
+        (false, _) => Some("a device, pipe or socket"),
+    })
 }
 
 /// The folder of a file; the current one for a bare name.

@@ -4,7 +4,8 @@
 //! Every number is the shortest that reads back to the same f64. There is no metadata: a comment would be a row to most
 //! readers.
 
-use super::{EncodeError, EncodeInput, Encoder, Storage};
+use super::text::MOST_DIGITS;
+use super::{EncodeError, EncodeInput, Encoder, Shape, Storage};
 use crate::grid::table::named;
 
 /// The container. See the module.
@@ -32,12 +33,24 @@ impl Encoder for Csv {
         false
     }
 
+    /// Axes, channels and errors of a texel.
+    fn most_bytes(&self, shape: &Shape<'_>) -> usize {
+        let numbers = shape.grid.axes().len() + 2 * shape.channels;
+        // the head is a line of names
+        (shape.grid.len() + 16).saturating_mul(numbers * (MOST_DIGITS[1] + 1))
+    }
+
+    /// The text and nothing else.
+    fn most_memory(&self, shape: &Shape<'_>) -> usize {
+        self.most_bytes(shape)
+    }
+
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
         input.check(self)?;
         let failed = |e: ::csv::Error| EncodeError::Library { format: "csv", source: Box::new(e) };
         let n = input.channels.len();
         let known = input.errors.len() == input.values.len();
-        let mut writer = ::csv::Writer::from_writer(Vec::new());
+        let mut writer = ::csv::Writer::from_writer(Vec::with_capacity(self.most_bytes(&input.shape())));
         let axes = input.grid.axes().iter().map(|a| a.quantity.id.to_owned());
         let channels = input.channels.iter().map(|c| c.id.clone());
         let errors = input.channels.iter().filter(|_| known).map(|c| format!("error of {}", c.id));

@@ -28,6 +28,9 @@ pub struct Exr;
 /// Side of a tile.
 const TILE: usize = 64;
 
+/// Bytes that are reserved for the header of a part.
+const RESERVE: usize = 1 << 16;
+
 impl Encoder for Exr {
     fn id(&self) -> &'static str {
         "exr"
@@ -109,9 +112,17 @@ fn write(
     attributes: ImageAttributes,
     layers: Vec<Layer<AnyChannels<FlatSamples>>>,
 ) -> Result<Vec<u8>, EncodeError> {
-    let mut bytes = Cursor::new(Vec::new());
+    // a block that does not shrink is stored as it is; it has a place, a size and an offset
+    let size = |l: &Layer<AnyChannels<FlatSamples>>| {
+        let width = |s: &FlatSamples| if matches!(s, FlatSamples::F16(_)) { 2 } else { 4 };
+        let samples = l.channel_data.list.iter().map(|c| c.sample_data.len() * width(&c.sample_data));
+        samples.sum::<usize>() / 63 * 64 + l.size.1 * 16 + RESERVE
+    };
+    let mut bytes = Cursor::new(Vec::with_capacity(layers.iter().map(size).sum()));
     Image::from_layers(attributes, layers).write().non_parallel().to_buffered(&mut bytes).map_err(library)?;
-    Ok(bytes.into_inner())
+    let mut bytes = bytes.into_inner();
+    bytes.shrink_to_fit();
+    Ok(bytes)
 }
 
 /// The parts of a file that this container wrote, named after its table.

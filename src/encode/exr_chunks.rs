@@ -1,4 +1,4 @@
-//! The chunks of an OpenEXR file: where they are, and whether the file has their bytes.
+//! The chunks of an OpenEXR file: where they are, whether the file has their bytes, and whether those can be so many pixels.
 //!
 //! They are taken out of the file here and not by the `exr` crate: that one asks for the memory that a chunk claims, up to the size that the
 //! header tells, before it looks for the bytes.
@@ -10,6 +10,7 @@ use ::exr::block::chunk::{
 };
 use ::exr::error::{Error, Result};
 use ::exr::math::Vec2;
+use ::exr::meta::attribute::Compression;
 use ::exr::meta::header::Header;
 
 /// Bit of the version field: several parts.
@@ -103,6 +104,73 @@ fn headers_end(bytes: &[u8], multipart: bool) -> Result<usize> {
             return Ok(at);
         }
     }
+}
+
+/// Most bytes that a byte of DEFLATE stands for: a match of 258 bytes has at least 2 bits.
+const DEFLATE: usize = 1032;
+
+/// Most bytes of pixels that a byte of a block can stand for; none for DWA, whose blocks tell more ([`dwa`]).
+///
+/// PXR24 stores 3 bytes of 4 of a float. A token of RLE has 2 bytes and stands for up to 128. A run of PIZ has at least 9 bits
+/// and repeats a word of 2 bytes up to 255 times. A flat block of B44A has 3 bytes in place of 32.
+const fn ratio(compression: Compression) -> Option<usize> {
+    Some(match compression {
+        Compression::Uncompressed => 1,
+        Compression::RLE => 64,
+        Compression::B44 | Compression::B44A => 11,
+        Compression::PIZ => 454,
+        Compression::ZIP1 | Compression::ZIP16 => DEFLATE,
+        Compression::PXR24 => DEFLATE / 3 * 4,
+        _ => return None,
+    })
+}
+
+/// Checks that a block can hold the pixels that it claims, before the crate asks for their memory.
+pub(super) fn guard(header: &Header, chunk: &Chunk) -> Result<()> {
+    let (CompressedBlock::ScanLine(CompressedScanLineBlock { compressed_pixels_le: bytes, .. })
+    | CompressedBlock::Tile(CompressedTileBlock { compressed_pixels_le: bytes, .. })) =
+        &chunk.compressed_block
+    else {
+        return Ok(());
+    };
+    let place = header.get_block_data_indices(&chunk.compressed_block)?;
+    let size = header.get_absolute_block_pixel_coordinates(place)?.size;
+    let pixels = size.0.saturating_mul(size.1).saturating_mul(header.channels.bytes_per_pixel);
+    let most = match ratio(header.compression) {
+        // a block that did not shrink is stored as it is
+        _ if bytes.len() == pixels => pixels,
+        Some(ratio) => bytes.len().saturating_mul(ratio),
+        None => {
+            dwa(bytes).ok_or_else(|| Error::Invalid("a DWA block that claims more than it holds".into()))?
+        }
+    };
+    // small blocks have tables of their own, and cost little
+    if pixels > most.max(1 << 16) {
+        return Err(Error::Invalid("a block that claims more pixels than its bytes can hold".into()));
+    }
+    Ok(())
+}
+
+/// Most bytes of pixels of a DWA block, or none if its counters claim more than its sections can hold: the crate takes them at their
+/// word, and a forged one makes it ask for terabytes, which ends the process.
+///
+/// Counters, of 8 bytes: version, bytes of other channels unpacked and packed, packed bytes of AC, DC and RLE, bytes of RLE unpacked
+/// and of what that stands for, AC and DC coefficients, how AC is packed. A DC coefficient stands for 64 samples of up to 4 bytes.
+fn dwa(bytes: &[u8]) -> Option<usize> {
+    let mut counters = [0_usize; 11];
+    for (n, eight) in counters.iter_mut().zip(bytes.chunks_exact(8)) {
+        *n = usize::try_from(u64::from_le_bytes(eight.try_into().ok()?)).ok()?;
+    }
+    let [_, other, other_packed, ac_packed, dc_packed, rle_packed, rle, rle_raw, ac, dc, _] = counters;
+    let packed = [other_packed, ac_packed, dc_packed, rle_packed];
+    let fits = |unpacked: usize, packed: usize| unpacked <= packed.saturating_mul(DEFLATE);
+    let sound = packed.iter().all(|n| *n <= bytes.len())
+        && fits(other, other_packed)
+        && fits(ac.saturating_mul(2), ac_packed)
+        && fits(dc.saturating_mul(2), dc_packed)
+        && fits(rle, rle_packed)
+        && rle_raw <= rle.saturating_mul(64);
+    sound.then(|| other.saturating_add(rle_raw).saturating_add(dc.saturating_mul(256)))
 }
 
 fn word(bytes: &[u8], at: usize) -> Result<u32> {

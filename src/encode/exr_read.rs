@@ -6,14 +6,14 @@
 //! Memory is asked for by what the blocks hold, not by the size that the header tells: a block must not claim more pixels than its bytes
 //! can stand for, and the picture is made when all of its blocks are there.
 
-use super::exr_chunks::Chunks;
+use super::exr_chunks::{self, Chunks};
 use super::read::{Claim, Image, MAX_SAMPLES, Plane, ReadError, Sample};
 use crate::grid::provenance::ATTRIBUTE;
 use ::exr::block::UncompressedBlock;
-use ::exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock};
+use ::exr::block::chunk::{Chunk, CompressedBlock};
 use ::exr::error::{Error, Result as ExrResult};
 use ::exr::meta::MetaData;
-use ::exr::meta::attribute::{AttributeValue, Compression, SampleType, Text};
+use ::exr::meta::attribute::{AttributeValue, SampleType, Text};
 use ::exr::meta::header::Header;
 use ::exr::prelude::f16;
 use std::collections::BTreeSet;
@@ -180,7 +180,7 @@ impl Picture {
         {
             return Ok(());
         }
-        guard(header, &chunk)?;
+        exr_chunks::guard(header, &chunk)?;
         let block = UncompressedBlock::decompress_chunk(chunk, meta, false)?;
         let (at, size) = (block.index.pixel_position, block.index.pixel_size);
         if !self.seen.insert((layer, at.0, at.1)) {
@@ -223,54 +223,6 @@ impl Picture {
 
 fn invalid(what: &'static str) -> Error {
     Error::Invalid(what.into())
-}
-
-/// Most bytes of pixels that a byte of a block can stand for, so that no memory is asked for that the block cannot fill.
-///
-/// A match of DEFLATE has at least 2 bits and at most 258 bytes, which is 1032 to 1; PXR24 stores 3 bytes of 4 of a float. A token
-/// of RLE has 2 bytes and stands for up to 128. A run of PIZ has at least 9 bits and repeats a word of 2 bytes up to 255
-/// times. A flat block of B44A has 3 bytes in place of 32. DWA has one DC and at least one AC coefficient of 2 bytes, both packed by DEFLATE, for
-/// 64 pixels of up to 4 bytes: 66048 to 1; RLE within DEFLATE has the same.
-const fn ratio(compression: Compression) -> usize {
-    match compression {
-        Compression::Uncompressed => 1,
-        Compression::RLE => 64,
-        Compression::B44 | Compression::B44A => 11,
-        Compression::PIZ => 454,
-        Compression::ZIP1 | Compression::ZIP16 => 1032,
-        Compression::PXR24 => 1376,
-        _ => 66048,
-    }
-}
-
-/// Checks that a block can hold the pixels that it claims, and the counters of a DWA block, which the crate takes at their word: a
-/// forged one makes it ask for terabytes, and that ends the process. No counter of a sound block exceeds 64 per byte (8 x 8
-/// blocks of a picture one pixel wide).
-fn guard(header: &Header, chunk: &Chunk) -> ExrResult<()> {
-    let (CompressedBlock::ScanLine(CompressedScanLineBlock { compressed_pixels_le: bytes, .. })
-    | CompressedBlock::Tile(CompressedTileBlock { compressed_pixels_le: bytes, .. })) =
-        &chunk.compressed_block
-    else {
-        return Ok(());
-    };
-    let size = header
-        .get_absolute_block_pixel_coordinates(header.get_block_data_indices(&chunk.compressed_block)?)?
-        .size;
-    let pixels = size.0.saturating_mul(size.1).saturating_mul(header.channels.bytes_per_pixel);
-    // the crate takes a DWA block without bytes for one of zeros
-    let most = bytes.len().saturating_mul(ratio(header.compression)).max(1 << 16);
-    if pixels > most {
-        return Err(invalid("a block that claims more pixels than its bytes can hold"));
-    }
-    if matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_)) {
-        let limit = pixels.saturating_mul(64).min(most) as u64;
-        let counters =
-            bytes.chunks_exact(8).take(11).filter_map(|b| b.try_into().ok()).map(u64::from_le_bytes);
-        if counters.max().is_some_and(|n| n > limit) {
-            return Err(invalid("a DWA block that claims to be larger than its pixels"));
-        }
-    }
-    Ok(())
 }
 
 /// Decodes a line of samples; the crate hands them over in the byte order of the machine.

@@ -59,6 +59,11 @@ impl Encoder for Merl {
         false
     }
 
+    /// Three planes of f64, whatever the channels.
+    fn most_bytes(&self, shape: &Shape<'_>) -> usize {
+        12 + 24 * shape.grid.len()
+    }
+
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
         input.check(self)?;
         let channels = input.channels.len();

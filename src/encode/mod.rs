@@ -113,6 +113,15 @@ pub trait Encoder: Debug + Send + Sync {
         }
         Ok(())
     }
+    /// Most bytes of a file with a table of this shape, without its metadata.
+    fn most_bytes(&self, shape: &Shape<'_>) -> usize {
+        texels::bytes(shape.storage, self.components(shape), shape.extent()).unwrap_or(usize::MAX)
+    }
+    /// Most memory that [`Encoder::encode`] takes, its result included and its input not: a bake is refused before it begins
+    /// where that does not fit. It is checked by measuring (`tests/memory.rs`).
+    fn most_memory(&self, shape: &Shape<'_>) -> usize {
+        self.most_bytes(shape).saturating_mul(3)
+    }
     /// True if the file has a place for the provenance.
     fn holds_metadata(&self) -> bool {
         true

@@ -161,6 +161,8 @@ impl Storage {
             let code = planes.get(c).and_then(|p| p.get(t)).copied().unwrap_or(0.0);
             self.coding(c).decode(code, range(c))
         };
-        texels.flat_map(|t| (0..n).map(move |c| (t, c))).map(|(t, c)| at(t, c)).collect()
+        let mut values = Vec::with_capacity(texels.len() * n);
+        texels.for_each(|t| values.extend((0..n).map(|c| at(t, c))));
+        values
     }
 }

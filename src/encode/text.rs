@@ -7,8 +7,9 @@
 //! Recipes put text round them: `before = "static const float table[] = {\n"`, `after = "};\n"`. What they make of it is a
 //! source file of an engine; `manifest.json` tells the rest.
 
-use super::{EncodeError, EncodeInput, Encoder, FileOption, Storage};
+use super::{EncodeError, EncodeInput, Encoder, FileOption, Shape, Storage};
 use half::f16;
+use std::fmt::Write;
 
 /// The container. See the module.
 #[derive(Debug, Clone, Copy)]
@@ -48,26 +49,50 @@ impl Encoder for Text {
 
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
         input.check(self)?;
-        let line =
-            |line: &[f64]| line.iter().map(|v| number(*v, input.storage)).collect::<Vec<String>>().join(", ");
-        let count = input.channels.len();
-        let lines: Vec<String> = if input.options.contains(&FileOption::Planar) {
-            let plane = |c: usize| input.values.iter().skip(c).step_by(count.max(1)).copied();
-            let planes: Vec<f64> = (0..count).flat_map(plane).collect();
-            planes.chunks(IN_A_LINE).map(line).collect()
-        } else {
-            input.values.chunks(IN_A_LINE).map(line).collect()
+        let count = input.channels.len().max(1);
+        let texels = input.values.len() / count;
+        let planar = input.options.contains(&FileOption::Planar);
+        // the place in the table of number i
+        let place = |i: usize| if planar { i % texels * count + i / texels } else { i };
+        let mut text = String::with_capacity(self.most_bytes(&input.shape()));
+        for i in 0..input.values.len() {
+            match i % IN_A_LINE {
+                _ if i == 0 => {}
+                0 => text.push_str(",\n"),
+                _ => text.push_str(", "),
+            }
+            write(&mut text, input.values[place(i)], input.storage);
+        }
+        text.shrink_to_fit();
+        Ok(text.into_bytes())
+    }
+
+    /// `0x3c00`; digits, sign, point and exponent; two characters between numbers.
+    fn most_bytes(&self, shape: &Shape<'_>) -> usize {
+        let digits = match shape.storage {
+            Storage::Half => 6,
+            Storage::Float => MOST_DIGITS[0],
+            _ => MOST_DIGITS[1],
         };
-        Ok(lines.join(",\n").into_bytes())
+        (shape.grid.len() * shape.channels).saturating_mul(digits + 2)
+    }
+
+    /// The text and nothing else; twice that where memory cannot be given back in place.
+    fn most_memory(&self, shape: &Shape<'_>) -> usize {
+        self.most_bytes(shape).saturating_mul(2)
     }
 }
 
+/// Longest numbers of 32 and 64 bits as they are printed: `-1.17549435e-38`, `-2.2250738585072014e-308`.
+pub(super) const MOST_DIGITS: [usize; 2] = [16, 24];
+
 /// A number of the storage.
 #[allow(clippy::cast_possible_truncation, reason = "the value is a number of the storage: checked")]
-fn number(v: f64, storage: Storage) -> String {
-    match storage {
-        Storage::Half => format!("0x{:04x}", f16::from_f64(v).to_bits()),
-        Storage::Float => format!("{:?}", v as f32),
-        _ => format!("{v:?}"),
-    }
+fn write(text: &mut String, v: f64, storage: Storage) {
+    // writing to a string does not fail
+    let _ = match storage {
+        Storage::Half => write!(text, "0x{:04x}", f16::from_f64(v).to_bits()),
+        Storage::Float => write!(text, "{:?}", v as f32),
+        _ => write!(text, "{v:?}"),
+    };
 }

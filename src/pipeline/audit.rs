@@ -296,8 +296,14 @@ fn foreign(folder: &Path, known: &[&str]) -> Result<Vec<Foreign>, AuditError> {
     Ok(found)
 }
 
+/// Largest file that is unpacked for what it says of itself.
+const MOST_READ: u64 = 1 << 26;
+
 /// What a file says of itself.
 fn origin(path: &Path) -> Option<Origin> {
+    if fs::metadata(path).ok()?.len() > MOST_READ {
+        return None;
+    }
     let of = |p: &Provenance| Origin {
         recipe: p.recipe.name.clone(),
         table: p.name.clone(),

@@ -152,6 +152,8 @@ pub struct PlanEntry<'a> {
     pub files: Vec<String>,
     /// Hash of its resolved recipe.
     pub hash: &'a str,
+    /// Most bytes of memory that it takes.
+    pub memory: u64,
 }
 
 /// The largest of something, borrowed.
@@ -239,6 +241,7 @@ impl<'a> Event<'a> {
                 tolerance: t.tolerance,
                 files: super::file_names(t),
                 hash: &t.hash,
+                memory: super::memory::table(t),
             })
             .collect();
         Event::Plan { recipe: &plan.name, tables }

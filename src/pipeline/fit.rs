@@ -2,9 +2,9 @@
 
 use super::PipelineError;
 use crate::cancel::Cancel;
-use crate::grid::Table;
 use crate::grid::fit::{Objective, Samples, places, places_count};
 use crate::grid::layout::Point;
+use crate::grid::{Grid, Table};
 use crate::integrate::{MAX_CHANNELS, Sums};
 use crate::recipe::PlannedTable;
 use crate::tables::Bound;
@@ -89,6 +89,12 @@ impl Fitted {
         }
         figures
     }
+}
+
+/// Most points that a fit on a grid takes.
+pub(super) fn points(grid: &Grid) -> usize {
+    let count = |(k, most): &(usize, usize)| Some(places_count(grid, *k)).filter(|n| n <= most);
+    PER_CELL.iter().chain(&PER_CELL_QUICK).filter_map(count).max().unwrap_or(0)
 }
 
 /// Fits every channel of a table by itself; `bound` is what bakes it, a `quick` fit has fewer points. A point where the integral fails is left out; the laws report those.

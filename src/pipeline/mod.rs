@@ -10,6 +10,7 @@ mod fit;
 mod gather;
 pub mod golden;
 mod manifest;
+pub mod memory;
 mod size;
 pub mod suggest;
 mod table;
@@ -42,13 +43,16 @@ pub struct Settings {
     pub lock_timeout: Duration,
     /// Write nothing where a law could not be checked or a texel misses its tolerance.
     pub strict: bool,
+    /// Bytes of memory that the run may take; [`memory::MEMORY`], or what is available if that is less, if none.
+    pub memory: Option<u64>,
 }
 
 impl Settings {
-    /// Settings for a folder, with the defaults of the command: every core, [`LOCK_TIMEOUT`].
+    /// Settings for a folder, with the defaults of the command: every core, [`LOCK_TIMEOUT`],
+    /// [`memory::MEMORY`].
     #[must_use]
     pub fn new(out: impl Into<PathBuf>) -> Settings {
-        Settings { out: out.into(), jobs: None, lock_timeout: LOCK_TIMEOUT, strict: false }
+        Settings { out: out.into(), jobs: None, lock_timeout: LOCK_TIMEOUT, strict: false, memory: None }
     }
 }
 
@@ -138,6 +142,20 @@ pub enum PipelineError {
     /// The output folder, or a file in it, cannot be written.
     #[error(transparent)]
     Files(#[from] TransactionError),
+    /// A table that takes more memory than there is.
+    #[error(
+        "table {table} takes up to {} of memory, and {} may be taken. Take shorter axes, or a binary container in place of text; \
+         or allow more, where the machine has it",
+        size(*.needed), size(*.limit)
+    )]
+    Memory {
+        /// Table name.
+        table: String,
+        /// Most bytes that it takes.
+        needed: u64,
+        /// Bytes that may be taken.
+        limit: u64,
+    },
     /// More threads were asked for than are allowed.
     #[error("{from} = {jobs}: at most {limit} threads are allowed")]
     Jobs {
@@ -166,6 +184,11 @@ pub enum PipelineError {
         /// The message.
         message: String,
     },
+}
+
+/// Bytes for people: `1.3 GB`.
+fn size(bytes: u64) -> String {
+    bytesize::ByteSize::b(bytes).display().si().to_string()
 }
 
 fn laws(n: usize) -> String {
@@ -234,13 +257,13 @@ pub fn run(
     Ok(outcome)
 }
 
-/// What would stop a run before it begins, without a trace: conflicts of file names.
+/// What would stop a run before it begins, without a trace: conflicts of file names, and more memory than there is.
 ///
 /// # Errors
-/// [`PipelineError::Files`].
+/// [`PipelineError::Files`] and [`PipelineError::Memory`].
 pub fn check(plan: &Plan, settings: &Settings) -> Result<(), PipelineError> {
     transaction::check(&settings.out, &outputs(plan))?;
-    Ok(())
+    memory::check(plan, settings.memory)
 }
 
 /// Locks the output folder.
@@ -260,14 +283,15 @@ fn begin<'a>(
     Ok(files)
 }
 
-/// Names of every file that a plan writes, in order, relative to the output folder.
+/// Names of every file that a plan writes, in order, relative to the output folder. One that tables share by its name is there once; one
+/// that is there twice is a conflict, which [`check`] finds.
 #[must_use]
 pub fn outputs(plan: &Plan) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
-    for name in plan.tables.iter().flat_map(file_names) {
-        if !names.contains(&name) {
-            names.push(name);
-        }
+    for table in &plan.tables {
+        let shared = |name: &String| table.file.is_some() && names.contains(name);
+        let own: Vec<String> = file_names(table).into_iter().filter(|name| !shared(name)).collect();
+        names.extend(own);
     }
     names.push(MANIFEST.to_owned());
     names

@@ -155,14 +155,15 @@ fn encode_output(
         options: &options,
         provenance_json: &json,
     };
-    let [before, after] = &planned.around;
-    let mut bytes = before.clone().unwrap_or_default().into_bytes();
-    let numbers = encoder.encode(&input).map_err(|error| PipelineError::Encode {
+    let mut bytes = encoder.encode(&input).map_err(|error| PipelineError::Encode {
         table: name,
         output: label,
         error,
     })?;
-    bytes.extend(numbers);
+    let [before, after] = &planned.around;
+    if let Some(text) = before {
+        bytes.splice(0..0, text.bytes());
+    }
     bytes.extend(after.iter().flat_map(|text| text.bytes()));
     let record = FileRecord {
         file: file.to_owned(),

@@ -79,11 +79,11 @@ pub enum BakeError {
 /// Most texels in one task.
 const CHUNK: usize = 128;
 
-/// The results of one task: a run of texels.
-struct Row {
-    values: Vec<f64>,
-    errors: Vec<f64>,
-    evaluations: Vec<u32>,
+/// Where the results of one task go: a run of texels.
+struct Row<'a> {
+    values: &'a mut [f64],
+    errors: &'a mut [f64],
+    evaluations: &'a mut [u32],
 }
 
 /// Bakes a table on the current rayon pool.
@@ -95,42 +95,40 @@ pub fn bake(bound: &Bound, options: Options<'_>) -> Result<Table, BakeError> {
     let len = grid.len();
     // small enough that a one-row table keeps every thread busy, large enough that a task is worth its keeping
     let width = (len / 32).clamp(1, CHUNK);
-    let rows = len.div_ceil(width);
-    let done = AtomicUsize::new(0);
-    let results: Vec<Result<Row, BakeError>> = (0..rows)
-        .into_par_iter()
-        .map(|y| {
-            let texels = y * width..len.min((y + 1) * width);
-            let count = texels.len();
-            let row = bake_row(bound, texels, options)?;
-            (options.progress)(done.fetch_add(count, Ordering::Relaxed) + count);
-            Ok(row)
-        })
-        .collect();
+    let n = bound.spec.layout.channels.len();
     let mut table = Table {
         grid: grid.clone(),
         channels: bound.spec.channels(),
-        values: Vec::new(),
-        errors: Vec::new(),
-        evaluations: Vec::new(),
+        values: vec![0.0; len * n],
+        errors: vec![0.0; len * n],
+        evaluations: vec![0; len],
     };
-    for row in results {
-        let row = row?;
-        table.values.extend(row.values);
-        table.errors.extend(row.errors);
-        table.evaluations.extend(row.evaluations);
-    }
+    let done = AtomicUsize::new(0);
+    // into the table at once: it is all the memory that a bake needs
+    let parts = table.values.par_chunks_mut(width * n).zip(table.errors.par_chunks_mut(width * n));
+    let rows: Vec<Result<(), BakeError>> = parts
+        .zip(table.evaluations.par_chunks_mut(width))
+        .enumerate()
+        .map(|(y, ((values, errors), evaluations))| {
+            let count = evaluations.len();
+            bake_row(bound, y * width, Row { values, errors, evaluations }, options)?;
+            (options.progress)(done.fetch_add(count, Ordering::Relaxed) + count);
+            Ok(())
+        })
+        .collect();
+    rows.into_iter().collect::<Result<(), BakeError>>()?;
     if options.on_miss == OnMiss::Fail {
         check_tolerance(&table, options.tolerance)?;
     }
     Ok(table)
 }
 
-fn bake_row(bound: &Bound, texels: std::ops::Range<usize>, options: Options<'_>) -> Result<Row, BakeError> {
-    let channels = bound.spec.layout.channels.len();
+/// Bakes the texels from `first` on that a row has room for.
+fn bake_row(bound: &Bound, first: usize, row: Row<'_>, options: Options<'_>) -> Result<(), BakeError> {
+    let n = bound.spec.layout.channels.len();
     let grid = &bound.spec.grid;
-    let mut row = Row { values: Vec::new(), errors: Vec::new(), evaluations: Vec::new() };
-    for texel in texels {
+    let slots = row.values.chunks_exact_mut(n).zip(row.errors.chunks_exact_mut(n)).zip(row.evaluations);
+    for (texel, ((values, errors), evaluations)) in (first..).zip(slots) {
         options.cancel.check()?;
         let e = bound.baker.texel(grid.texel(texel).values(), options.tolerance).map_err(|error| {
             BakeError::Texel {
@@ -140,11 +138,11 @@ fn bake_row(bound: &Bound, texels: std::ops::Range<usize>, options: Options<'_>)
                 error,
             }
         })?;
-        row.values.extend_from_slice(&e.value[..channels]);
-        row.errors.extend_from_slice(&e.error[..channels]);
-        row.evaluations.push(e.evaluations);
+        values.copy_from_slice(&e.value[..n]);
+        errors.copy_from_slice(&e.error[..n]);
+        *evaluations = e.evaluations;
     }
-    Ok(row)
+    Ok(())
 }
 
 /// Number of texels of which some channel's estimate is above the tolerance.

@@ -28,6 +28,7 @@ pub use js::Js;
 pub use rust::Rust;
 pub use wgsl::Wgsl;
 
+use super::text::MOST_DIGITS;
 use super::{EncodeError, EncodeInput, Encoder, Shape, Storage};
 pub(crate) use expression::Expression;
 use program::Program;
@@ -175,11 +176,25 @@ impl<S: Syntax> Encoder for Code<S> {
         Ok(())
     }
 
+    /// A number, its suffix, comma and blank; eight of them are a line, with indentation.
+    fn most_bytes(&self, shape: &Shape<'_>) -> usize {
+        let digits = MOST_DIGITS[usize::from(shape.storage == Storage::Double)];
+        // the function that reads it has a length of its own
+        (shape.grid.len() * shape.channels).saturating_mul(digits + 4).saturating_add(1 << 16)
+    }
+
+    /// The numbers, and the file while it grows.
+    fn most_memory(&self, shape: &Shape<'_>) -> usize {
+        self.most_bytes(shape).saturating_mul(4)
+    }
+
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
         input.check(self)?;
         let program = Program::new(input)?;
-        let parts = program.parts(&self.0);
-        let comment = program.comment(input);
-        Ok(format!("{comment}\n{}", self.0.file(&parts)).into_bytes())
+        let file = self.0.file(&program.parts(&self.0));
+        let mut text = program.comment(input);
+        text.push('\n');
+        text.push_str(&file);
+        Ok(text.into_bytes())
     }
 }

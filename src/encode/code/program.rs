@@ -5,7 +5,7 @@
 //! its first channel.
 
 use super::expression::{Expression, number};
-use super::{Parts, Syntax};
+use super::{MOST_DIGITS, Parts, Syntax};
 use crate::encode::{EncodeError, EncodeInput, Storage};
 use crate::grid::axis::count;
 use crate::grid::{Axis, Direction, Texel, Warp};
@@ -59,13 +59,16 @@ impl Program<'_> {
 
     /// The parts in a language.
     pub(super) fn parts(&self, syntax: &dyn Syntax) -> Parts<'_> {
-        let mut numbers = String::new();
-        for line in self.values.chunks(IN_A_LINE) {
-            let suffix = syntax.suffix(self.double);
-            let line: Vec<String> =
-                line.iter().map(|v| format!("{}{suffix}", number(*v, self.double))).collect();
-            let comma = if numbers.is_empty() { "" } else { ",\n" };
-            let _ = write!(numbers, "{comma}    {}", line.join(", "));
+        let suffix = syntax.suffix(self.double);
+        let mut numbers =
+            String::with_capacity(self.values.len() * (MOST_DIGITS[usize::from(self.double)] + 4));
+        for (i, v) in self.values.iter().enumerate() {
+            let before = match i % IN_A_LINE {
+                _ if i == 0 => "    ",
+                0 => ",\n    ",
+                _ => ", ",
+            };
+            let _ = write!(numbers, "{before}{}{suffix}", number(*v, self.double));
         }
         let mut lines = Vec::new();
         for (n, index) in self.indices.iter().enumerate() {

@@ -2,8 +2,9 @@
 
 use super::TransactionError;
 use super::error::folder as cannot;
+use crate::encode::atomic;
 use std::collections::HashMap;
-use std::fs::{self, Metadata};
+use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
@@ -21,35 +22,13 @@ pub fn check(folder: &Path, names: &[String]) -> Result<(), TransactionError> {
     check_folder(folder)?;
     for name in names {
         let path = folder.join(name);
-        let found = match fs::symlink_metadata(&path) {
-            Err(e) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&e.kind()) => continue,
+        match atomic::obstacle(&path) {
+            Ok(None) => {}
+            Ok(Some(what)) => return Err(TransactionError::InTheWay { path, what }),
             Err(source) => return Err(cannot(folder, source)),
-            Ok(found) => found,
-        };
-        let what = if found.is_symlink() {
-            match fs::metadata(&path) {
-                // the link is replaced, what it leads to is left alone
-                Ok(end) if end.is_file() => continue,
-                Ok(end) if end.is_dir() => "a link to a folder",
-                Ok(_) => "a link to what is no file",
-                Err(_) => "a link that leads nowhere",
-            }
-        } else if let Some(what) = not_a_file(&found) {
-            what
-        } else {
-            continue;
-        };
-        return Err(TransactionError::InTheWay { path, what });
+        }
     }
     Ok(())
-}
-
-fn not_a_file(found: &Metadata) -> Option<&'static str> {
-    match () {
-        () if found.is_file() => None,
-        () if found.is_dir() => Some("a folder"),
-        () => Some("a device, pipe or socket"),
-    }
 }
 
 /// The folder, or the nearest of those above it that exists, must be one.

@@ -255,6 +255,26 @@ fn files_with_the_same_bytes_are_not_touched() {
     assert_eq!(held(folder.path()), both());
 }
 
+#[cfg(unix)]
+#[test]
+fn who_has_a_file_open_keeps_what_it_opened() {
+    use std::io::Read;
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), &old()).unwrap();
+    let mut readers = ["a", MANIFEST].map(|name| File::open(folder.path().join(name)).unwrap());
+    write(folder.path(), &new()).unwrap();
+    for (reader, text) in readers.iter_mut().zip([b"old a".to_vec(), manifest(&old())]) {
+        let mut bytes = Vec::new();
+        reader.read_to_end(&mut bytes).unwrap();
+        assert_eq!(bytes, text, "replaced, not overwritten");
+    }
+    // and the new ones have the usual permissions
+    fs::write(folder.path().join("usual"), b"").unwrap();
+    let mode = |name: &str| fs::metadata(folder.path().join(name)).unwrap().permissions().mode();
+    assert_eq!(mode("a"), mode("usual"));
+}
+
 #[test]
 fn a_locked_folder_is_waited_for() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,0 +1,168 @@
+//! How much memory a plan takes, before it is baked.
+//!
+//! Tables are baked one after the other, and a file goes to the disk when it is finished, so a plan takes what its largest table
+//! does, and the parts of files that tables share. An estimate is an upper bound of what the program asks the allocator for: a table in 64-bit floats
+//! with its errors, what is fitted to it, its rounded values, its files, and what a container needs to write one
+//! ([`Encoder::most_memory`]). `tests/memory.rs` measures bakes against it.
+
+use super::PipelineError;
+use crate::encode::{self, Encoder, FileOption, Shape, Storage};
+use crate::grid::Grid;
+use crate::integrate::MAX_CHANNELS;
+use crate::recipe::{Plan, PlannedTable};
+
+/// What a bake may take if nothing else is said, where the machine has as much: the same plans are refused on every
+/// machine that is larger.
+pub const MEMORY: u64 = 4 << 30;
+
+/// What the program takes for anything: code, threads, curves that models keep, points between texels.
+const FIXED: u64 = 96 << 20;
+
+/// What Zstandard takes at level 19 apart from its input and output: windows and tables of matches.
+const ZSTD: u64 = 128 << 20;
+
+/// Bytes that a process may still take: what the machine has available, less where a limit of its group or of the process itself is
+/// lower. None if the system does not tell.
+#[must_use]
+pub fn available() -> Option<u64> {
+    let mut system = sysinfo::System::new();
+    system.refresh_memory();
+    let known = system.total_memory() > 0;
+    let machine = known.then(|| system.available_memory()).filter(|n| *n > 0);
+    // what a group has left counts the cache of its files, which is given back when memory is asked for
+    let group = known.then(|| system.cgroup_limits()).flatten().map(|g| g.total_memory.saturating_sub(g.rss));
+    [machine, group, process_limit()].into_iter().flatten().min()
+}
+
+/// The limit of the address space (`ulimit -v`), of which threads and the allocator's reserves take a part.
+#[cfg(unix)]
+fn process_limit() -> Option<u64> {
+    use rustix::process::{Resource, getrlimit};
+    getrlimit(Resource::As).current.map(|n| n / 8 * 7)
+}
+
+#[cfg(not(unix))]
+fn process_limit() -> Option<u64> {
+    None
+}
+
+/// Refuses a plan that takes more than `limit`, or, without one, more than [`MEMORY`] or what is available.
+pub(super) fn check(plan: &Plan, limit: Option<u64>) -> Result<(), PipelineError> {
+    let shared = shared(plan);
+    let need = |t: &PlannedTable| table(t).saturating_add(shared);
+    let Some(largest) = plan.tables.iter().rev().max_by_key(|t| need(t)) else { return Ok(()) };
+    let needed = need(largest);
+    let limit = limit.unwrap_or_else(|| available().map_or(MEMORY, |n| n.min(MEMORY)));
+    if needed <= limit {
+        return Ok(());
+    }
+    Err(PipelineError::Memory { table: largest.name.clone(), needed, limit })
+}
+
+/// Most bytes that a plan takes.
+#[must_use]
+pub fn plan(plan: &Plan) -> u64 {
+    plan.tables.iter().map(table).max().unwrap_or(0).saturating_add(shared(plan))
+}
+
+/// Parts of files that several tables share: they are held until the last one is there, and joined.
+fn shared(plan: &Plan) -> u64 {
+    let named = |t: &&PlannedTable| {
+        t.file.is_some() && plan.tables.iter().filter(|other| other.file == t.file).count() > 1
+    };
+    let file = |t: &PlannedTable| outputs(t, &grid(t)).map(|(e, s)| bytes(e.most_bytes(&s))).sum::<u64>();
+    plan.tables.iter().filter(named).map(|t| file(t).saturating_mul(JOINED)).fold(0, u64::saturating_add)
+}
+
+/// Times that a part is held while files are joined: as it was written, unpacked, and written again.
+const JOINED: u64 = 5;
+
+/// Most bytes that a table takes.
+#[must_use]
+pub fn table(planned: &PlannedTable) -> u64 {
+    let grid = grid(planned);
+    let texels = bytes(grid.len());
+    let channels = bytes(planned.bound.spec.layout.channels.len());
+    // values and errors, and the number of evaluations
+    let table = texels.saturating_mul(16 * channels + 4);
+    let values = texels.saturating_mul(8 * channels);
+    let fitted = if planned.texels.are_exact() { [0; 2] } else { fit(&grid, channels) };
+    let candidates = if planned.texels.are_exact() { 1 } else { 4 };
+    let mut files = 0_u64;
+    let mut writing = 0_u64;
+    for (encoder, shape) in outputs(planned, &grid) {
+        let rounded = values.saturating_add(blocks(shape.storage, texels)).saturating_mul(candidates);
+        let copy = if candidates > 1 { table.saturating_add(values) } else { 0 };
+        let zstd = if shape.has(FileOption::Zstd) { ZSTD } else { 0 };
+        let file = bytes(encoder.most_bytes(&shape));
+        let encode = bytes(encoder.most_memory(&shape)).saturating_sub(file).saturating_add(zstd);
+        let checked = blocks(shape.storage, texels);
+        let most = encode.max(checked).max(copy);
+        writing = writing.max(rounded.saturating_add(most));
+        files = files.saturating_add(file);
+    }
+    let [fitting, kept] = fitted;
+    let after = files.saturating_add(writing).saturating_add(kept);
+    table.saturating_add(fitting.max(after)).saturating_add(FIXED)
+}
+
+/// The grid of a table; where its size is searched for, the largest that can be tried.
+fn grid(planned: &PlannedTable) -> Grid {
+    let grid = &planned.bound.spec.grid;
+    let Some(size) = planned.size.as_ref().filter(|_| planned.found.is_none()) else { return grid.clone() };
+    let mut axes = grid.axes().to_vec();
+    for i in &size.axes {
+        if let Some(axis) = axes.get_mut(*i) {
+            axis.len = size.longest;
+        }
+    }
+    // more texels than a table can have are not tried
+    Grid::new(axes).unwrap_or_else(|_| grid.clone())
+}
+
+/// The outputs of a table, as they are on a grid.
+fn outputs<'a>(
+    planned: &'a PlannedTable,
+    grid: &'a Grid,
+) -> impl Iterator<Item = (&'static dyn Encoder, Shape<'a>)> {
+    let channels = planned.bound.spec.layout.channels.len();
+    planned.outputs.iter().filter_map(move |o| {
+        let encoder = encode::encoder(&o.container)?;
+        let shape = Shape { grid, channels, storage: Storage::find(&o.storage)?, options: options(o) };
+        Some((encoder, shape))
+    })
+}
+
+/// The options of an output that change what it takes.
+fn options(output: &crate::recipe::Output) -> &'static [FileOption] {
+    let has = |option: FileOption| output.options.iter().any(|o| o == option.id());
+    match (has(FileOption::Rgba), has(FileOption::Zstd)) {
+        (true, true) => &[FileOption::Rgba, FileOption::Zstd],
+        (true, false) => &[FileOption::Rgba],
+        (false, true) => &[FileOption::Zstd],
+        (false, false) => &[],
+    }
+}
+
+/// Blocks of texels: positions, blocks as they are found, and what they decode to, by channel and by texel.
+fn blocks(storage: Storage, texels: u64) -> u64 {
+    if storage.is_block() { texels.saturating_mul(64) } else { 0 }
+}
+
+/// What fitting takes, and what is kept of it: the truth at many points for each texel, which texels each of them reads, and for each
+/// channel, all at once, the vectors of a solution.
+fn fit(grid: &Grid, channels: u64) -> [u64; 2] {
+    let points = bytes(super::fit::points(grid));
+    let corners = 1_u64 << grid.axes().len();
+    let truth = 56 + 8 * bytes(MAX_CHANNELS);
+    let reads = 2 * 16 * corners + 16;
+    let solution = 96 * channels;
+    let texels = bytes(grid.len()).saturating_mul(112 * channels);
+    let fitting = points.saturating_mul(40 + 2 * truth + reads + solution).saturating_add(texels);
+    let kept = points.saturating_mul(truth + reads + 16 * channels).saturating_add(texels);
+    [fitting, kept]
+}
+
+fn bytes(n: usize) -> u64 {
+    u64::try_from(n).unwrap_or(u64::MAX)
+}
