@@ -9,7 +9,9 @@
 //! crate keeps custom attributes in a `HashMap` with a random seed, so that two of them make the bytes differ from run
 //! to run. The line order is fixed to increasing for the same reason.
 
+use super::stoppable::Stoppable;
 use super::{EncodeError, EncodeInput, Encoder, FileOption, Image as Picture, ReadError, Storage};
+use crate::cancel::Cancel;
 use crate::grid::Channel;
 use crate::grid::provenance::ATTRIBUTE;
 use ::exr::image::write::WritableImage;
@@ -53,8 +55,8 @@ impl Encoder for Exr {
         &[&[0x76, 0x2f, 0x31, 0x01]]
     }
 
-    fn read(&self, bytes: &[u8]) -> Result<Picture, ReadError> {
-        super::exr_read::read(bytes)
+    fn read(&self, bytes: &[u8], cancel: &Cancel) -> Result<Picture, ReadError> {
+        super::exr_read::read(bytes, cancel)
     }
 
     fn joins(&self) -> bool {
@@ -71,7 +73,7 @@ impl Encoder for Exr {
             let fault = "the tables of one file are parts of one size";
             return Err(EncodeError::Axes { format: self.id(), fault });
         }
-        write(ImageAttributes::with_size(size), layers)
+        write(ImageAttributes::with_size(size), layers, &Cancel::new())
     }
 
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
@@ -97,7 +99,7 @@ impl Encoder for Exr {
             Layer::new((width, height), attributes, encoding, channels(input, texels))
         };
         let layers: Vec<Layer<_>> = (0..parts).map(layer).collect();
-        write(ImageAttributes::with_size((width, height)), layers)
+        write(ImageAttributes::with_size((width, height)), layers, input.cancel)
     }
 }
 
@@ -108,10 +110,11 @@ fn library(e: ::exr::error::Error) -> EncodeError {
 fn write(
     attributes: ImageAttributes,
     layers: Vec<Layer<AnyChannels<FlatSamples>>>,
+    cancel: &Cancel,
 ) -> Result<Vec<u8>, EncodeError> {
-    let mut bytes = Cursor::new(Vec::new());
+    let mut bytes = Stoppable::new(Cursor::new(Vec::new()), cancel);
     Image::from_layers(attributes, layers).write().non_parallel().to_buffered(&mut bytes).map_err(library)?;
-    Ok(bytes.into_inner())
+    Ok(bytes.into_inner().into_inner())
 }
 
 /// The parts of a file that this container wrote, named after its table.

@@ -48,17 +48,19 @@ impl Encoder for Text {
 
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
         input.check(self)?;
-        let line =
-            |line: &[f64]| line.iter().map(|v| number(*v, input.storage)).collect::<Vec<String>>().join(", ");
+        let line = |line: &[f64]| {
+            input.cancel.check()?;
+            Ok(line.iter().map(|v| number(*v, input.storage)).collect::<Vec<String>>().join(", "))
+        };
         let count = input.channels.len();
-        let lines: Vec<String> = if input.options.contains(&FileOption::Planar) {
+        let lines: Result<Vec<String>, EncodeError> = if input.options.contains(&FileOption::Planar) {
             let plane = |c: usize| input.values.iter().skip(c).step_by(count.max(1)).copied();
             let planes: Vec<f64> = (0..count).flat_map(plane).collect();
             planes.chunks(IN_A_LINE).map(line).collect()
         } else {
             input.values.chunks(IN_A_LINE).map(line).collect()
         };
-        Ok(lines.join(",\n").into_bytes())
+        Ok(lines?.join(",\n").into_bytes())
     }
 }
 

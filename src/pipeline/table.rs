@@ -153,14 +153,14 @@ fn encode_output(
         storage,
         options: &options,
         provenance_json: &json,
+        cancel: source.cancel,
     };
     let [before, after] = &planned.around;
     let mut bytes = before.clone().unwrap_or_default().into_bytes();
-    let numbers = encoder.encode(&input).map_err(|error| PipelineError::Encode {
-        table: name,
-        output: label,
-        error,
-    })?;
+    let numbers = encoder.encode(&input);
+    // a library that is stopped tells of a fault of its own
+    source.cancel.check()?;
+    let numbers = numbers.map_err(|error| PipelineError::Encode { table: name, output: label, error })?;
     bytes.extend(numbers);
     bytes.extend(after.iter().flat_map(|text| text.bytes()));
     let record = FileRecord {

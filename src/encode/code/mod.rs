@@ -179,6 +179,7 @@ impl<S: Syntax> Encoder for Code<S> {
         input.check(self)?;
         let program = Program::new(input)?;
         let parts = program.parts(&self.0);
+        input.cancel.check()?;
         let comment = program.comment(input);
         Ok(format!("{comment}\n{}", self.0.file(&parts)).into_bytes())
     }

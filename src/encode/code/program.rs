@@ -6,6 +6,7 @@
 
 use super::expression::{Expression, number};
 use super::{Parts, Syntax};
+use crate::cancel::Cancel;
 use crate::encode::{EncodeError, EncodeInput, Storage};
 use crate::grid::axis::count;
 use crate::grid::{Axis, Direction, Texel, Warp};
@@ -24,6 +25,7 @@ pub(super) struct Program<'a> {
     values: &'a [f64],
     channels: usize,
     double: bool,
+    cancel: &'a Cancel,
 }
 
 impl Program<'_> {
@@ -39,6 +41,7 @@ impl Program<'_> {
             values: input.values,
             channels: input.channels.len(),
             double: input.storage == Storage::Double,
+            cancel: input.cancel,
         })
     }
 
@@ -57,10 +60,10 @@ impl Program<'_> {
         lines.join("\n")
     }
 
-    /// The parts in a language.
+    /// The parts in a language; not all numbers if it is stopped.
     pub(super) fn parts(&self, syntax: &dyn Syntax) -> Parts<'_> {
         let mut numbers = String::new();
-        for line in self.values.chunks(IN_A_LINE) {
+        for line in self.values.chunks(IN_A_LINE).take_while(|_| !self.cancel.is_set()) {
             let suffix = syntax.suffix(self.double);
             let line: Vec<String> =
                 line.iter().map(|v| format!("{}{suffix}", number(*v, self.double))).collect();
