@@ -124,7 +124,8 @@ fn blocks_stop() {
 fn containers_stop() {
     let axis = |id| Axis::new(Quantity::find(id).unwrap(), 16, Texel::Center);
     let grid = Grid::new(vec![axis("mu"), axis("roughness")]).unwrap();
-    let channels = vec![Channel { id: "x".into(), meaning: "x".into(), range: [0.0, 1.0] }];
+    let channels =
+        vec![Channel { id: "x".into(), meaning: "x".into(), role: String::new(), range: [0.0, 1.0] }];
     let values: Vec<f64> = (0..256).map(|i| f64::from(i % 16) / 16.0).collect();
     let mut read = 0;
     for encoder in ENCODERS {
