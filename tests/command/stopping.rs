@@ -126,7 +126,8 @@ fn containers_stop() {
     let grid = Grid::new(vec![axis("mu"), axis("roughness")]).unwrap();
     let channels =
         vec![Channel { id: "x".into(), meaning: "x".into(), role: String::new(), range: [0.0, 1.0] }];
-    let values: Vec<f64> = (0..256).map(|i| f64::from(i % 16) / 16.0).collect();
+    // numbers of every storage
+    let values: Vec<f64> = (0..256).map(|i| f64::from(i % 3 % 2)).collect();
     let mut read = 0;
     for encoder in ENCODERS {
         let input = |cancel| EncodeInput {
