@@ -196,6 +196,7 @@ fn rows_run_down_and_slices_are_stacked() {
             storage: Storage::Half,
             options: &[],
             provenance_json: "{}",
+            cancel: &brdfbake::cancel::Cancel::new(),
         };
         let image = read_bytes(&encoder("exr").unwrap().encode(&input).unwrap()).unwrap();
         assert_eq!((image.width, image.height), size);
@@ -230,6 +231,7 @@ fn metadata_is_utf8_and_alone() {
             storage,
             options: &[],
             provenance_json: text,
+            cancel: &brdfbake::cancel::Cancel::new(),
         };
         let bytes = encoder.encode(&input).unwrap();
         let at = bytes.windows(text.len()).filter(|w| *w == text.as_bytes()).count();
@@ -279,6 +281,7 @@ fn containers_refuse_what_they_cannot_hold() {
         storage: Storage::Unorm16,
         options: &[],
         provenance_json: "{}",
+        cancel: &brdfbake::cancel::Cancel::new(),
     };
     let (png, exr) = (encoder("png").unwrap(), encoder("exr").unwrap());
     let message = |e: Result<Vec<u8>, EncodeError>| e.unwrap_err().to_string();

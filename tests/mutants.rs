@@ -4,9 +4,12 @@
 //! copy of the tree, by
 //!
 //! ```sh
-//! cargo test --test mutants -- --ignored --nocapture            # all of them: an hour on four cores
-//! BRDFBAKE_MUTANTS=grid cargo test --test mutants -- --ignored --nocapture    # those with `grid` in their id
+//! cargo mutate                            # all of them: an hour on four cores
+//! BRDFBAKE_MUTANTS=grid cargo mutate      # those with `grid` in their id
 //! ```
+//!
+//! which is `BRDFBAKE_MUTANTS=all cargo test --test mutants -- --ignored --nocapture`. Without the variable (`cargo long`) they are
+//! skipped.
 //!
 //! A mutant is caught when its test binary still builds and the test fails. One that survives is an error, unless the list
 //! gives the reason; so is one that is said to survive and does not.
@@ -117,8 +120,12 @@ fn the_list_fits_the_tree() {
 #[test]
 #[ignore = "builds and runs tests once a mutant: an hour"]
 fn mutants_are_caught() {
-    let wanted = std::env::var("BRDFBAKE_MUTANTS").unwrap_or_default();
-    let chosen: Vec<Mutant> = list().into_iter().filter(|m| m.id.contains(&wanted)).collect();
+    let Ok(wanted) = std::env::var("BRDFBAKE_MUTANTS") else {
+        println!("SKIPPED: `cargo mutate` makes the mutants");
+        return;
+    };
+    let all = wanted == "all";
+    let chosen: Vec<Mutant> = list().into_iter().filter(|m| all || m.id.contains(&wanted)).collect();
     assert!(!chosen.is_empty(), "no mutant has `{wanted}` in its id");
     let workshop = Workshop::new();
     workshop.check_unchanged(&chosen);

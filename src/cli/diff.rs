@@ -1,6 +1,7 @@
 //! `brdfbake diff A B`: the comparison behind golden-image tests.
 
 use super::{Exit, Failure, output};
+use crate::cancel::Cancel;
 use crate::encode::ReadError;
 use crate::encode::diff::Tolerance;
 use crate::encode::diff_files::{self, DiffError};
@@ -33,7 +34,7 @@ pub struct Args {
 ///
 /// # Errors
 /// [`Failure`] when a file cannot be read.
-pub fn run(args: &Args) -> Result<Exit, Failure> {
+pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
     if !(args.tolerance >= 0.0 && args.ulps >= 0.0) {
         return Err(Failure::usage(format!(
             "--tolerance {} and --ulps {} must not be negative",
@@ -42,7 +43,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         )));
     }
     let tolerance = Tolerance { absolute: args.tolerance, ulps: args.ulps };
-    let diff = diff_files::paths(&args.a, &args.b, tolerance).map_err(failure)?;
+    let diff = diff_files::paths_until(cancel, &args.a, &args.b, tolerance).map_err(failure)?;
     if !args.quiet {
         let (a, b) = (args.a.display().to_string(), args.b.display().to_string());
         let json = || serde_json::to_string(&diff).unwrap_or_default();
@@ -54,6 +55,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
 fn failure(error: DiffError) -> Failure {
     match &error {
         DiffError::Read { source, .. } => Failure { message: error.to_string(), ..read_failure(source) },
+        DiffError::Cancelled(stopped) => Failure::from(*stopped),
         DiffError::Kinds { .. } => Failure::input(error),
         _ => Failure::new(Exit::Io, error),
     }
@@ -61,6 +63,9 @@ fn failure(error: DiffError) -> Failure {
 
 /// The exit code of a reading fault: 5 if the system refused, 3 if the file is not what it should be.
 pub(super) fn read_failure(error: &ReadError) -> Failure {
-    let exit = if matches!(error, ReadError::Io { .. }) { Exit::Io } else { Exit::Input };
-    Failure::new(exit, error)
+    match error {
+        ReadError::Cancelled(stopped) => Failure::from(*stopped),
+        ReadError::Io { .. } => Failure::new(Exit::Io, error),
+        _ => Failure::input(error),
+    }
 }

@@ -1,6 +1,7 @@
 //! `brdfbake inspect FILE`.
 
 use super::{Exit, Failure, output};
+use crate::cancel::Cancel;
 use crate::encode::read;
 use crate::report;
 use std::path::PathBuf;
@@ -20,9 +21,9 @@ pub struct Args {
 ///
 /// # Errors
 /// [`Failure`] when a file cannot be read.
-pub fn run(args: &Args) -> Result<Exit, Failure> {
+pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
     for path in &args.files {
-        let image = read::read_file(path).map_err(|e| super::diff::read_failure(&e))?;
+        let image = read::read_file_until(cancel, path).map_err(|e| super::diff::read_failure(&e))?;
         let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
         if args.json {
             output::data(&json(&name, &image))?;

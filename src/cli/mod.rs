@@ -71,8 +71,8 @@ enum Verb {
 pub fn run(cli: Cli, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     match cli.verb {
         Verb::Bake(args) => bake::run(&args, cancel),
-        Verb::Inspect(args) => inspect::run(&args),
-        Verb::Diff(args) => diff::run(&args),
+        Verb::Inspect(args) => inspect::run(&args, cancel),
+        Verb::Diff(args) => diff::run(&args, cancel),
         Verb::Verify(args) => verify::run(&args),
         Verb::Golden(args) => golden::run(&args, cancel),
         Verb::Eval(args) => eval::run(&args, cancel),

@@ -56,6 +56,7 @@ impl Encoder for Csv {
         let errors = input.channels.iter().filter(|_| known).map(|c| format!("error of {}", c.id));
         writer.write_record(axes.chain(channels).chain(errors)).map_err(failed)?;
         for (t, texel) in input.values.chunks_exact(n).enumerate() {
+            input.cancel.check()?;
             let at = named(input.grid, &input.grid.texel(t));
             let errors = if known { &input.errors[t * n..(t + 1) * n] } else { &[] };
             let numbers = at.iter().map(|(_, v)| v).chain(texel).chain(errors);

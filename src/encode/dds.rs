@@ -21,6 +21,7 @@
 //! Source: Microsoft, "DDS_HEADER structure" and "DDS_HEADER_DXT10 structure" of the DDS programming guide.
 
 use super::{EncodeError, EncodeInput, Encoder, FileOption, Image, ReadError, Shape, Storage, texels};
+use crate::cancel::Cancel;
 use crate::grid::provenance::ATTRIBUTE;
 
 /// The container. See the module.
@@ -86,8 +87,8 @@ impl Encoder for Dds {
         &[MAGIC]
     }
 
-    fn read(&self, bytes: &[u8]) -> Result<Image, ReadError> {
-        super::dds_read::read(bytes)
+    fn read(&self, bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
+        super::dds_read::read(bytes, cancel)
     }
 
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {

@@ -4,6 +4,7 @@
 use super::dds::{HEAD, TEXTURE2D, TEXTURE3D, storage};
 use super::read::{Image, MAX_SAMPLES, ReadError};
 use super::{Storage, texels};
+use crate::cancel::Cancel;
 
 const FORMAT: &str = "dds";
 
@@ -20,7 +21,7 @@ struct Header {
     start: usize,
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
+pub(super) fn read(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
     let h = header(bytes)?;
     let height = h.height.saturating_mul(h.slices);
     if h.width.saturating_mul(height).saturating_mul(h.components) > MAX_SAMPLES {
@@ -39,7 +40,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
         let got = bytes.len().saturating_sub(h.start);
         fault(format!("the file has {got} bytes of pixels, its header tells of {size}"))
     })?;
-    let channels = texels::finish(texels::unpack(data, h.storage, h.components, extent), None);
+    let channels = texels::finish(texels::unpack(data, h.storage, h.components, extent, cancel), None);
     Ok(Image { format: FORMAT, width: h.width, height, channels, provenance: None })
 }
 

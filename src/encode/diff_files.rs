@@ -4,6 +4,7 @@ use super::atomic::HIDDEN;
 use super::diff::{self, ImageDiff, Tolerance};
 use super::diff_json::{self, JsonDiff};
 use super::read::{self, ReadError};
+use crate::cancel::{Cancel, Cancelled};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::fs;
@@ -60,6 +61,9 @@ pub enum PathDiff {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DiffError {
+    /// Stopped from outside.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// A file or folder cannot be read.
     #[error("{path}: {source}")]
     Io {
@@ -143,9 +147,17 @@ impl PathDiff {
 /// # Errors
 /// [`DiffError`] if one cannot be read, or one is a file and the other a folder.
 pub fn paths(a: &Path, b: &Path, tolerance: Tolerance) -> Result<PathDiff, DiffError> {
+    paths_until(&Cancel::new(), a, b, tolerance)
+}
+
+/// [`paths`], until it is stopped.
+///
+/// # Errors
+/// As [`paths`]; [`DiffError::Cancelled`].
+pub fn paths_until(cancel: &Cancel, a: &Path, b: &Path, tolerance: Tolerance) -> Result<PathDiff, DiffError> {
     match (a.is_dir(), b.is_dir()) {
-        (true, true) => folders(a, b, tolerance).map(PathDiff::Folder),
-        (false, false) => files(a, b, tolerance).map(|d| PathDiff::File(Box::new(d))),
+        (true, true) => folders_until(cancel, a, b, tolerance).map(PathDiff::Folder),
+        (false, false) => files_until(cancel, a, b, tolerance).map(|d| PathDiff::File(Box::new(d))),
         _ => Err(DiffError::Kinds { a: a.to_owned(), b: b.to_owned() }),
     }
 }
@@ -155,8 +167,12 @@ pub fn paths(a: &Path, b: &Path, tolerance: Tolerance) -> Result<PathDiff, DiffE
 /// # Errors
 /// [`DiffError`] if one cannot be read.
 pub fn files(a: &Path, b: &Path, tolerance: Tolerance) -> Result<FileDiff, DiffError> {
-    let (x, y) = (load(a)?, load(b)?);
-    compare([a, b], [&x, &y], tolerance)
+    files_until(&Cancel::new(), a, b, tolerance)
+}
+
+fn files_until(cancel: &Cancel, a: &Path, b: &Path, tolerance: Tolerance) -> Result<FileDiff, DiffError> {
+    let (x, y) = (load(cancel, a)?, load(cancel, b)?);
+    compare(cancel, [a, b], [&x, &y], tolerance)
 }
 
 /// Compares the files of two folders, matched by relative path. What a killed run left (names with [`HIDDEN`]) is
@@ -165,6 +181,10 @@ pub fn files(a: &Path, b: &Path, tolerance: Tolerance) -> Result<FileDiff, DiffE
 /// # Errors
 /// [`DiffError`] if a file that both folders have, with different bytes, cannot be read.
 pub fn folders(a: &Path, b: &Path, tolerance: Tolerance) -> Result<FolderDiff, DiffError> {
+    folders_until(&Cancel::new(), a, b, tolerance)
+}
+
+fn folders_until(cancel: &Cancel, a: &Path, b: &Path, tolerance: Tolerance) -> Result<FolderDiff, DiffError> {
     let (mut left, mut right) = (BTreeSet::new(), BTreeSet::new());
     list(a, "", 0, &mut left)?;
     list(b, "", 0, &mut right)?;
@@ -175,8 +195,8 @@ pub fn folders(a: &Path, b: &Path, tolerance: Tolerance) -> Result<FolderDiff, D
             (false, _) => FileDiff::OnlySecond,
             _ => {
                 let (p, q) = (a.join(name), b.join(name));
-                let (x, y) = (load(&p)?, load(&q)?);
-                if x == y { FileDiff::Identical } else { compare([&p, &q], [&x, &y], tolerance)? }
+                let (x, y) = (load(cancel, &p)?, load(cancel, &q)?);
+                if x == y { FileDiff::Identical } else { compare(cancel, [&p, &q], [&x, &y], tolerance)? }
             }
         };
         files.push((name.clone(), diff));
@@ -184,20 +204,29 @@ pub fn folders(a: &Path, b: &Path, tolerance: Tolerance) -> Result<FolderDiff, D
     Ok(FolderDiff { files })
 }
 
-fn load(path: &Path) -> Result<Vec<u8>, DiffError> {
-    read::load(path).map_err(|e| match e {
+fn load(cancel: &Cancel, path: &Path) -> Result<Vec<u8>, DiffError> {
+    read::load_until(cancel, path).map_err(|e| match e {
+        ReadError::Cancelled(stopped) => stopped.into(),
         ReadError::Io { path, source } => DiffError::Io { path, source },
         source => DiffError::Read { path: path.to_owned(), source },
     })
 }
 
-fn compare(paths: [&Path; 2], bytes: [&[u8]; 2], tolerance: Tolerance) -> Result<FileDiff, DiffError> {
+fn compare(
+    cancel: &Cancel,
+    paths: [&Path; 2],
+    bytes: [&[u8]; 2],
+    tolerance: Tolerance,
+) -> Result<FileDiff, DiffError> {
     let extension = |p: &Path| p.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     let [a, b] = paths.map(|p| extension(p).unwrap_or_default());
     let picture = |e: &str| super::ENCODERS.iter().any(|c| !c.magic().is_empty() && c.extension() == e);
     if picture(&a) && picture(&b) {
         let image = |i: usize| {
-            read::read_bytes(bytes[i]).map_err(|source| DiffError::Read { path: paths[i].to_owned(), source })
+            read::read_bytes_until(cancel, bytes[i]).map_err(|e| match e {
+                ReadError::Cancelled(stopped) => stopped.into(),
+                source => DiffError::Read { path: paths[i].to_owned(), source },
+            })
         };
         return Ok(FileDiff::Image(diff::images(&image(0)?, &image(1)?, tolerance)));
     }

@@ -1,5 +1,6 @@
 //! Why a table cannot be put into a container.
 
+use crate::cancel::Cancelled;
 use crate::math::figures::exact;
 
 /// Why a table cannot be put into a container.
@@ -129,6 +130,9 @@ pub enum EncodeError {
         /// Storage id.
         storage: &'static str,
     },
+    /// Stopped from outside.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// The library that writes the container failed.
     #[error("{format}: {source}")]
     Library {

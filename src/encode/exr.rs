@@ -9,7 +9,9 @@
 //! crate keeps custom attributes in a `HashMap` with a random seed, so that two of them make the bytes differ from run
 //! to run. The line order is fixed to increasing for the same reason.
 
+use super::stoppable::Stoppable;
 use super::{EncodeError, EncodeInput, Encoder, FileOption, Image as Picture, ReadError, Storage};
+use crate::cancel::Cancel;
 use crate::grid::Channel;
 use crate::grid::provenance::ATTRIBUTE;
 use ::exr::image::write::WritableImage;
@@ -56,8 +58,8 @@ impl Encoder for Exr {
         &[&[0x76, 0x2f, 0x31, 0x01]]
     }
 
-    fn read(&self, bytes: &[u8]) -> Result<Picture, ReadError> {
-        super::exr_read::read(bytes)
+    fn read(&self, bytes: &[u8], cancel: &Cancel) -> Result<Picture, ReadError> {
+        super::exr_read::read(bytes, cancel)
     }
 
     fn joins(&self) -> bool {
@@ -74,7 +76,7 @@ impl Encoder for Exr {
             let fault = "the tables of one file are parts of one size";
             return Err(EncodeError::Axes { format: self.id(), fault });
         }
-        write(ImageAttributes::with_size(size), layers)
+        write(ImageAttributes::with_size(size), layers, &Cancel::new())
     }
 
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
@@ -100,7 +102,7 @@ impl Encoder for Exr {
             Layer::new((width, height), attributes, encoding, channels(input, texels))
         };
         let layers: Vec<Layer<_>> = (0..parts).map(layer).collect();
-        write(ImageAttributes::with_size((width, height)), layers)
+        write(ImageAttributes::with_size((width, height)), layers, input.cancel)
     }
 }
 
@@ -111,6 +113,7 @@ fn library(e: ::exr::error::Error) -> EncodeError {
 fn write(
     attributes: ImageAttributes,
     layers: Vec<Layer<AnyChannels<FlatSamples>>>,
+    cancel: &Cancel,
 ) -> Result<Vec<u8>, EncodeError> {
     // a block that does not shrink is stored as it is; it has a place, a size and an offset
     let size = |l: &Layer<AnyChannels<FlatSamples>>| {
@@ -118,9 +121,10 @@ fn write(
         let samples = l.channel_data.list.iter().map(|c| c.sample_data.len() * width(&c.sample_data));
         samples.sum::<usize>() / 63 * 64 + l.size.1 * 16 + RESERVE
     };
-    let mut bytes = Cursor::new(Vec::with_capacity(layers.iter().map(size).sum()));
+    let room = Vec::with_capacity(layers.iter().map(size).sum());
+    let mut bytes = Stoppable::new(Cursor::new(room), cancel);
     Image::from_layers(attributes, layers).write().non_parallel().to_buffered(&mut bytes).map_err(library)?;
-    let mut bytes = bytes.into_inner();
+    let mut bytes = bytes.into_inner().into_inner();
     bytes.shrink_to_fit();
     Ok(bytes)
 }

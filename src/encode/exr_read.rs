@@ -8,6 +8,7 @@
 
 use super::exr_chunks::{self, Chunks};
 use super::read::{Claim, Image, MAX_SAMPLES, Plane, ReadError, Sample};
+use crate::cancel::Cancel;
 use crate::grid::provenance::ATTRIBUTE;
 use ::exr::block::UncompressedBlock;
 use ::exr::block::chunk::{Chunk, CompressedBlock};
@@ -26,25 +27,26 @@ const MAX_CHANNELS: usize = 4096;
 
 /// Reads a file. The crate (1.74) panics on some damaged B44 blocks where overflow checks are on, so a panic is caught
 /// and told as an error; the message of the panic hook, if the program has one, is still printed.
-pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
-    std::panic::catch_unwind(|| decode(bytes))
+pub(super) fn read(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
+    std::panic::catch_unwind(|| decode(bytes, cancel))
         .unwrap_or_else(|_| Err(fault("the data are damaged (the decoder gave up)".to_owned())))
 }
 
-fn decode(bytes: &[u8]) -> Result<Image, ReadError> {
+fn decode(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
     let meta = ::exr::block::read(Cursor::new(bytes), false).map_err(library)?.into_meta_data();
     let headers = meta.headers.as_slice();
     let (width, height) = size(headers)?;
     let provenance = claims(headers.iter().filter_map(claim).collect());
     let mut picture = Picture::new(headers)?;
     for chunk in Chunks::new(bytes, headers).map_err(library)? {
+        cancel.check()?;
         chunk.and_then(|c| picture.insert(&meta, c)).map_err(library)?;
     }
     if picture.pixels_left > 0 {
         return Err(fault(format!("{} pixels are in no block of the file", picture.pixels_left)));
     }
     let parts = slices(&provenance, picture.first.len());
-    let channels = stack(picture.finish(headers).map_err(library)?, parts);
+    let channels = stack(picture.finish(headers, cancel).map_err(library)?, parts);
     let height = channels.first().map_or(height, |c| c.values.len() / width.max(1));
     Ok(Image { format: FORMAT, width, height, channels, provenance })
 }
@@ -193,13 +195,13 @@ impl Picture {
     }
 
     /// The planes, when every block is there.
-    fn finish(mut self, headers: &[Header]) -> ExrResult<Vec<Plane>> {
+    fn finish(mut self, headers: &[Header], cancel: &Cancel) -> ExrResult<Vec<Plane>> {
         for (layer, header) in headers.iter().enumerate() {
             let area = header.layer_size.0 * header.layer_size.1;
             let planes = self.planes.iter_mut().skip(self.first[layer]);
             planes.take(header.channels.list.len()).for_each(|plane| plane.values = vec![0.0; area]);
         }
-        for block in std::mem::take(&mut self.blocks) {
+        for block in std::mem::take(&mut self.blocks).into_iter().take_while(|_| !cancel.is_set()) {
             let (at, size, layer) = (block.index.pixel_position, block.index.pixel_size, block.index.layer);
             let (first, count) = (self.first[layer], headers[layer].channels.list.len());
             let mut bytes = block.data.as_slice();

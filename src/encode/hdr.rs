@@ -8,6 +8,7 @@
 
 use super::read::{Claim, Image, MAX_SAMPLES, ReadError};
 use super::{EncodeError, EncodeInput, Encoder, Shape, Storage, texels};
+use crate::cancel::Cancel;
 use crate::grid::provenance::ATTRIBUTE;
 
 /// The container. See the module.
@@ -46,8 +47,8 @@ impl Encoder for Hdr {
         &[MAGIC, OTHER]
     }
 
-    fn read(&self, bytes: &[u8]) -> Result<Image, ReadError> {
-        read(bytes)
+    fn read(&self, bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
+        read(bytes, cancel)
     }
 
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
@@ -60,6 +61,7 @@ impl Encoder for Hdr {
         let text = input.provenance_json.replace(['\n', '\r'], " ");
         out.extend(format!("{ATTRIBUTE}={text}\n\n-Y {height} +X {width}\n").into_bytes());
         for row in pixels.chunks_exact(width * 4) {
+            input.cancel.check()?;
             match u16::try_from(width) {
                 Ok(w) if (8..0x8000).contains(&w) => {
                     out.extend([2, 2]);
@@ -97,7 +99,7 @@ fn fault(fault: impl Into<String>) -> ReadError {
     ReadError::Fault { format: FORMAT, fault: fault.into() }
 }
 
-fn read(bytes: &[u8]) -> Result<Image, ReadError> {
+fn read(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
     let head = &bytes[..bytes.len().min(MAX_HEADER)];
     let mut lines = head.split(|b| *b == b'\n');
     let mut used = 0;
@@ -120,10 +122,12 @@ fn read(bytes: &[u8]) -> Result<Image, ReadError> {
     if width.saturating_mul(height).saturating_mul(3) > MAX_SAMPLES {
         return Err(ReadError::Samples { format: FORMAT, width, height });
     }
-    let pixels = pixels(bytes.get(used..).unwrap_or_default(), width, height)?;
+    let pixels = pixels(bytes.get(used..).unwrap_or_default(), width, height, cancel)?;
     let provenance = text.map(Claim::parse);
-    let channels =
-        texels::finish(texels::unpack(&pixels, Storage::Rgbe, 3, [width, height, 1]), provenance.as_ref());
+    let channels = texels::finish(
+        texels::unpack(&pixels, Storage::Rgbe, 3, [width, height, 1], cancel),
+        provenance.as_ref(),
+    );
     Ok(Image { format: FORMAT, width, height, channels, provenance })
 }
 
@@ -140,11 +144,12 @@ fn size(line: &[u8]) -> Result<(usize, usize), ReadError> {
 }
 
 /// Four bytes a pixel. Memory grows with what the file holds, not with what its header tells.
-fn pixels(data: &[u8], width: usize, height: usize) -> Result<Vec<u8>, ReadError> {
+fn pixels(data: &[u8], width: usize, height: usize, cancel: &Cancel) -> Result<Vec<u8>, ReadError> {
     let cut = || fault("the pixels are cut short");
     let mut out = Vec::new();
     let mut at = 0;
     for _ in 0..height {
+        cancel.check()?;
         let head = data.get(at..at + 4).ok_or_else(cut)?;
         let coded = head[0] == 2 && head[1] == 2 && usize::from(head[2]) << 8 | usize::from(head[3]) == width;
         if coded && (8..0x8000).contains(&width) {

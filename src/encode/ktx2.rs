@@ -26,6 +26,7 @@
 
 use super::ktx2_read::{self, Raw};
 use super::{EncodeError, EncodeInput, Encoder, FileOption, Image, ReadError, Shape, Storage, dfd, texels};
+use crate::cancel::Cancel;
 use crate::grid::provenance::ATTRIBUTE;
 
 /// The container. See the module.
@@ -42,6 +43,10 @@ pub(super) const SCHEME_ZSTD: u32 = 2;
 
 #[cfg(feature = "zstd")]
 const LEVEL: i32 = 19;
+
+/// Bytes that are compressed between two looks at the token: a tenth of a second.
+#[cfg(feature = "zstd")]
+const PIECE: usize = 1 << 16;
 
 impl Encoder for Ktx2 {
     fn id(&self) -> &'static str {
@@ -77,8 +82,8 @@ impl Encoder for Ktx2 {
         &[MAGIC]
     }
 
-    fn read(&self, bytes: &[u8]) -> Result<Image, ReadError> {
-        ktx2_read::read(bytes)
+    fn read(&self, bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
+        ktx2_read::read(bytes, cancel)
     }
 
     fn joins(&self) -> bool {
@@ -106,6 +111,7 @@ impl Encoder for Ktx2 {
             zstd: shape.has(FileOption::Zstd),
             provenance: input.provenance_json,
             pixels,
+            cancel: input.cancel,
         };
         parts.write()
     }
@@ -123,13 +129,14 @@ struct Parts<'a> {
     zstd: bool,
     provenance: &'a str,
     pixels: Vec<u8>,
+    cancel: &'a Cancel,
 }
 
 impl Parts<'_> {
     fn write(&self) -> Result<Vec<u8>, EncodeError> {
         let descriptor = dfd::descriptor(self.storage, self.components);
         let keys = self.keys();
-        let data = if self.zstd { compress(&self.pixels)? } else { self.pixels.clone() };
+        let data = if self.zstd { compress(&self.pixels, self.cancel)? } else { self.pixels.clone() };
         // data that is not supercompressed begins at a multiple of its texel and of 4
         let texel = texels::size(self.storage, self.components);
         let align = if self.zstd { 1 } else { lcm(texel, 4) };
@@ -186,7 +193,8 @@ impl Parts<'_> {
 /// One array of several files, layer after layer; the key `brdfbake` is then a list of their provenances.
 fn join(files: &[Vec<u8>]) -> Result<Vec<u8>, EncodeError> {
     let library = |e: ReadError| EncodeError::Library { format: "ktx2", source: Box::new(e) };
-    let all: Vec<Raw> = files.iter().map(|f| ktx2_read::raw(f).map_err(library)).collect::<Result<_, _>>()?;
+    let all: Vec<Raw> =
+        files.iter().map(|f| ktx2_read::raw(f, &Cancel::new()).map_err(library)).collect::<Result<_, _>>()?;
     let fault = "tables in one file become layers of an array: all of one size, storage and options, without a third axis";
     let alike = |r: &Raw| all.first().is_some_and(|a| r.is_like(a)) && r.is_flat();
     let Some(first) = all.first().filter(|_| all.iter().all(alike)) else {
@@ -202,6 +210,7 @@ fn join(files: &[Vec<u8>]) -> Result<Vec<u8>, EncodeError> {
         zstd: first.zstd,
         provenance: &format!("[{}]", texts.join(",")),
         pixels: all.iter().flat_map(|r| r.pixels.iter().copied()).collect(),
+        cancel: &Cancel::new(),
     };
     parts.write()
 }
@@ -251,13 +260,20 @@ const fn lcm(a: usize, b: usize) -> usize {
 }
 
 #[cfg(feature = "zstd")]
-fn compress(bytes: &[u8]) -> Result<Vec<u8>, EncodeError> {
-    zstd::bulk::compress(bytes, LEVEL)
-        .map_err(|e| EncodeError::Library { format: "ktx2", source: Box::new(e) })
+fn compress(bytes: &[u8], cancel: &Cancel) -> Result<Vec<u8>, EncodeError> {
+    use std::io::Write;
+    let library = |e: std::io::Error| EncodeError::Library { format: "ktx2", source: Box::new(e) };
+    let mut encoder = zstd::stream::write::Encoder::new(Vec::new(), LEVEL).map_err(library)?;
+    encoder.set_pledged_src_size(Some(bytes.len() as u64)).map_err(library)?;
+    for piece in bytes.chunks(PIECE) {
+        cancel.check()?;
+        encoder.write_all(piece).map_err(library)?;
+    }
+    encoder.finish().map_err(library)
 }
 
 /// Not offered without the library: see [`Ktx2::options`].
 #[cfg(not(feature = "zstd"))]
-fn compress(_: &[u8]) -> Result<Vec<u8>, EncodeError> {
+fn compress(_: &[u8], _: &Cancel) -> Result<Vec<u8>, EncodeError> {
     Err(EncodeError::Option { format: "ktx2", option: "zstd", allowed: "none".to_owned() })
 }

@@ -5,7 +5,9 @@
 use super::Storage;
 use super::ktx2::{SCHEME_ZSTD, storage};
 use super::read::{Claim, Image, MAX_SAMPLES, ReadError};
+use super::stoppable::Stoppable;
 use super::texels;
+use crate::cancel::Cancel;
 use crate::grid::provenance::ATTRIBUTE;
 use std::io::Read;
 
@@ -39,7 +41,7 @@ impl Raw {
     }
 }
 
-pub(super) fn raw(bytes: &[u8]) -> Result<Raw, ReadError> {
+pub(super) fn raw(bytes: &[u8], cancel: &Cancel) -> Result<Raw, ReadError> {
     let format = word(bytes, 12)?;
     let (storage, components) =
         storage(format).ok_or_else(|| fault(format!("VkFormat {format} is not supported")))?;
@@ -67,7 +69,7 @@ pub(super) fn raw(bytes: &[u8]) -> Result<Raw, ReadError> {
     let scheme = word(bytes, 44)?;
     let pixels = match scheme {
         0 => level.to_vec(),
-        SCHEME_ZSTD => decompress(level, size)?,
+        SCHEME_ZSTD => decompress(level, size, cancel)?,
         other => return Err(fault(format!("supercompression {other} is not supported"))),
     };
     if pixels.len() != size {
@@ -79,13 +81,14 @@ pub(super) fn raw(bytes: &[u8]) -> Result<Raw, ReadError> {
     Ok(Raw { storage, components, extent, zstd: scheme == SCHEME_ZSTD, provenance, pixels })
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
-    let raw = raw(bytes)?;
+pub(super) fn read(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
+    let raw = raw(bytes, cancel)?;
     let [width, rest @ ..] = raw.extent;
     let [rows, depth, layers] = rest.map(|n| n.max(1));
     let height = rows * depth * layers;
     let provenance = (!raw.provenance.is_empty()).then(|| Claim::parse(raw.provenance));
-    let planes = texels::unpack(&raw.pixels, raw.storage, raw.components, [width, rows, depth * layers]);
+    let planes =
+        texels::unpack(&raw.pixels, raw.storage, raw.components, [width, rows, depth * layers], cancel);
     Ok(Image {
         format: FORMAT,
         width,
@@ -127,9 +130,9 @@ fn cut() -> ReadError {
 }
 
 /// Decompresses at most `size` bytes and one more, so that a frame that tells lies is found out and asks for no memory.
-fn decompress(data: &[u8], size: usize) -> Result<Vec<u8>, ReadError> {
+fn decompress(data: &[u8], size: usize, cancel: &Cancel) -> Result<Vec<u8>, ReadError> {
     // the decoder refuses a window of more than its default limit, 128 MiB
-    let decoder = ruzstd::decoding::StreamingDecoder::new(data).map_err(library)?;
+    let decoder = ruzstd::decoding::StreamingDecoder::new(Stoppable::new(data, cancel)).map_err(library)?;
     let mut out = Vec::new();
     decoder.take(size as u64 + 1).read_to_end(&mut out).map_err(library)?;
     Ok(out)

@@ -14,6 +14,7 @@
 //!
 //! # Example
 //! ```
+//! use brdfbake::cancel::Cancel;
 //! use brdfbake::encode::{EncodeInput, Storage, encoder, quantise_table, read};
 //! use brdfbake::grid::{Axis, Channel, Grid, Quantity, Table, Texel};
 //!
@@ -35,6 +36,7 @@
 //!     storage: Storage::Half,
 //!     options: &[],
 //!     provenance_json: "{}",
+//!     cancel: &Cancel::new(),
 //! })?;
 //! assert_eq!(read::read_bytes(&bytes)?.channels[0].values, rounded.values);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -63,12 +65,14 @@ pub mod ktx2;
 mod ktx2_read;
 pub mod merl;
 pub mod npy;
+mod open;
 pub mod option;
 pub mod png;
 mod png_read;
 mod quantise;
 pub mod raw;
 pub mod read;
+mod stoppable;
 pub mod storage;
 mod texels;
 pub mod text;
@@ -80,6 +84,7 @@ pub use quantise::{Quantised, RangeFault, Unstored, quantise_table, quantise_tab
 pub use read::{Image, ReadError};
 pub use storage::Storage;
 
+use crate::cancel::Cancel;
 use crate::grid::{Channel, Grid};
 use std::fmt::Debug;
 
@@ -145,17 +150,19 @@ pub trait Encoder: Debug + Send + Sync {
     fn magic(&self) -> &'static [&'static [u8]] {
         &[]
     }
-    /// Reads a file that begins with [`Encoder::magic`].
+    /// Reads a file that begins with [`Encoder::magic`]. Stopped, the result is of no use ([`read::read_bytes_until`]
+    /// looks at the token).
     ///
     /// # Errors
     /// [`ReadError`] for a file that is damaged or of a kind that is not supported.
-    fn read(&self, bytes: &[u8]) -> Result<Image, ReadError> {
+    fn read(&self, bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
+        let _ = cancel;
         Err(ReadError::Unknown(bytes.iter().copied().take(8).collect()))
     }
     /// Makes the bytes of the file. The same input gives the same bytes.
     ///
     /// # Errors
-    /// [`EncodeError`] says what the format cannot hold.
+    /// [`EncodeError`] says what the format cannot hold, or that it was stopped.
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError>;
 }
 
@@ -217,6 +224,8 @@ pub struct EncodeInput<'a> {
     pub options: &'a [FileOption],
     /// The provenance as JSON text.
     pub provenance_json: &'a str,
+    /// Set from outside to stop.
+    pub cancel: &'a Cancel,
 }
 
 impl EncodeInput<'_> {
@@ -265,6 +274,7 @@ impl EncodeInput<'_> {
         }
         let mut rounded = vec![0.0; n];
         for (t, texel) in self.values.chunks_exact(n).enumerate() {
+            self.cancel.check()?;
             rounded.copy_from_slice(texel);
             let fault = match self.storage.quantise_texel(&mut rounded, |c| self.channels[c].range) {
                 Ok(()) => rounded.iter().zip(texel).position(|(a, b)| a.to_bits() != b.to_bits()),

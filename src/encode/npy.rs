@@ -7,6 +7,7 @@
 
 use super::read::{Image, MAX_SAMPLES, Plane, ReadError};
 use super::{EncodeError, EncodeInput, Encoder, Storage, texels};
+use crate::cancel::Cancel;
 
 /// The container. See the module.
 #[derive(Debug, Clone, Copy)]
@@ -43,8 +44,8 @@ impl Encoder for Npy {
         &[MAGIC]
     }
 
-    fn read(&self, bytes: &[u8]) -> Result<Image, ReadError> {
-        read(bytes)
+    fn read(&self, bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
+        read(bytes, cancel)
     }
 
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
@@ -70,7 +71,7 @@ fn fault(fault: impl Into<String>) -> ReadError {
 }
 
 /// Reads an array of floats. The last axis of two or more is the channels; those before the width are stacked.
-fn read(bytes: &[u8]) -> Result<Image, ReadError> {
+fn read(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
     let cut = || fault("the header is cut short");
     let byte = |at: usize| bytes.get(at).copied().map(usize::from).ok_or_else(cut);
     let (length, start) = match byte(6)? {
@@ -102,7 +103,7 @@ fn read(bytes: &[u8]) -> Result<Image, ReadError> {
     if data.len() != size {
         return Err(fault(format!("{} bytes of numbers, the shape tells of {size}", data.len())));
     }
-    let mut planes = texels::unpack(data, storage, channels, [0; 3]);
+    let mut planes = texels::unpack(data, storage, channels, [0; 3], cancel);
     // an array has no colours
     let rename = |(c, p): (usize, &mut Plane)| p.name = format!("c{c}");
     planes.iter_mut().enumerate().for_each(rename);

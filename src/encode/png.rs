@@ -21,6 +21,7 @@
 //! Filter and compression level are fixed, so that one version of this program always makes the same bytes.
 
 use super::{EncodeError, EncodeInput, Encoder, FileOption, Image, ReadError, Shape, Storage, texels};
+use crate::cancel::Cancel;
 use crate::grid::provenance::ATTRIBUTE;
 
 /// The container. See the module.
@@ -61,8 +62,8 @@ impl Encoder for Png {
         &[b"\x89PNG\r\n\x1a\n"]
     }
 
-    fn read(&self, bytes: &[u8]) -> Result<Image, ReadError> {
-        super::png_read::read(bytes)
+    fn read(&self, bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
+        super::png_read::read(bytes, cancel)
     }
 
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {

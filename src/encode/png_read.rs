@@ -1,7 +1,9 @@
 //! Reads PNG: 1 to 16 bits, grey, colour, alpha, palette. Samples are codes as they stand: no gamma, no profile.
 
 use super::read::{Claim, Image, MAX_SAMPLES, Plane, ReadError, Sample};
+use super::stoppable::Stoppable;
 use super::texels;
+use crate::cancel::Cancel;
 use crate::grid::provenance::ATTRIBUTE;
 use image::codecs::png::PngDecoder;
 use image::{ImageDecoder, Limits};
@@ -18,9 +20,9 @@ const MAX_TEXT: usize = 1 << 24;
 /// Most bytes that a byte of DEFLATE stands for: a match of 258 bytes has at least 2 bits.
 const MAX_RATIO: usize = 1032;
 
-pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
+pub(super) fn read(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
     // crate png 0.18 can panic on a damaged palette; the panic is caught and told as an error
-    std::panic::catch_unwind(|| decode(bytes)).unwrap_or_else(|_| {
+    std::panic::catch_unwind(|| decode(bytes, cancel)).unwrap_or_else(|_| {
         Err(ReadError::Fault {
             format: FORMAT,
             fault: "the data are damaged (the decoder gave up)".to_owned(),
@@ -28,8 +30,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Image, ReadError> {
     })
 }
 
-fn decode(bytes: &[u8]) -> Result<Image, ReadError> {
-    let (width, height, planes) = pixels(bytes)?;
+fn decode(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
+    let (width, height, planes) = pixels(bytes, cancel)?;
     let provenance = text(bytes).map(Claim::parse);
     let channels = texels::finish(planes, provenance.as_ref());
     Ok(Image { format: FORMAT, width, height, channels, provenance })
@@ -40,10 +42,11 @@ fn library(e: impl std::error::Error + Send + Sync + 'static) -> ReadError {
 }
 
 /// Size and codes of each channel.
-fn pixels(bytes: &[u8]) -> Result<(usize, usize, Vec<Plane>), ReadError> {
+fn pixels(bytes: &[u8], cancel: &Cancel) -> Result<(usize, usize, Vec<Plane>), ReadError> {
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_ALLOC);
-    let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(library)?;
+    let decoder =
+        PngDecoder::with_limits(Stoppable::new(Cursor::new(bytes), cancel), limits).map_err(library)?;
     let (w, h) = decoder.dimensions();
     let (width, height) = (w as usize, h as usize);
     let colour = decoder.color_type();

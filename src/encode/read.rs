@@ -4,11 +4,13 @@
 //! is an error, never a panic and never a picture with holes in it.
 
 use super::coding::Coding;
+pub use super::open::{load, load_until, read_bytes, read_bytes_until, read_file, read_file_until};
 use super::storage::Storage;
+use crate::cancel::Cancelled;
 use crate::grid::Provenance;
 use crate::grid::provenance::SCHEMA;
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Most bytes of a file.
 pub const MAX_BYTES: u64 = 1 << 31;
@@ -284,6 +286,9 @@ impl Image {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {
+    /// Stopped from outside.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// The file cannot be opened or read.
     #[error("{path}: {source}")]
     Io {
@@ -330,43 +335,4 @@ pub enum ReadError {
         /// What is wrong.
         fault: String,
     },
-}
-
-/// Reads a picture from memory; the first bytes tell the container.
-///
-/// # Errors
-/// [`ReadError`] for anything but a sound file of a container that is read, within the limits.
-pub fn read_bytes(bytes: &[u8]) -> Result<Image, ReadError> {
-    let found = super::ENCODERS.iter().find(|e| e.magic().iter().any(|m| bytes.starts_with(m)));
-    match found {
-        Some(encoder) => encoder.read(bytes),
-        None => Err(ReadError::Unknown(bytes.iter().copied().take(8).collect())),
-    }
-}
-
-/// Reads a picture from a file.
-///
-/// # Errors
-/// As [`read_bytes`], and if the file cannot be read or is larger than [`MAX_BYTES`].
-pub fn read_file(path: &Path) -> Result<Image, ReadError> {
-    read_bytes(&load(path)?)
-}
-
-/// The bytes of a file, if there are not too many.
-///
-/// # Errors
-/// [`ReadError::Io`] and [`ReadError::Bytes`].
-pub fn load(path: &Path) -> Result<Vec<u8>, ReadError> {
-    use std::io::Read;
-    let io = |source| ReadError::Io { path: path.to_owned(), source };
-    let file = std::fs::File::open(path).map_err(io)?;
-    let told = file.metadata().map_err(io)?.len();
-    if told > MAX_BYTES {
-        return Err(ReadError::Bytes { bytes: told });
-    }
-    let mut bytes = Vec::new();
-    // A pipe tells no length: count while reading.
-    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(io)?;
-    let bytes_read = bytes.len() as u64;
-    if bytes_read > MAX_BYTES { Err(ReadError::Bytes { bytes: bytes_read }) } else { Ok(bytes) }
 }

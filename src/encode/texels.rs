@@ -4,6 +4,7 @@ use super::blocks::Kind;
 use super::coding::{self, RGB9E5, RGBE};
 use super::read::{Claim, Plane, Sample};
 use super::{EncodeError, EncodeInput, Storage};
+use crate::cancel::Cancel;
 use half::f16;
 
 /// Storages that graphics processors read, in the order of lists.
@@ -66,6 +67,7 @@ pub(super) fn pack(input: &EncodeInput<'_>, components: usize) -> Result<Vec<u8>
     let mut bytes = Vec::with_capacity(input.grid.len() * size(input.storage, components));
     let mut codes = vec![0.0; components];
     for (t, texel) in input.values.chunks_exact(n).enumerate() {
+        input.cancel.check()?;
         for (c, code) in codes.iter_mut().enumerate() {
             *code = match texel.get(c) {
                 Some(&v) => {
@@ -136,8 +138,14 @@ fn put(storage: Storage, codes: &[f64], bytes: &mut Vec<u8>) {
     }
 }
 
-/// The planes of a picture as components `R`, `G`, `B`, `A`. Unorm planes hold codes until [`finish`] decodes them.
-pub(super) fn unpack(bytes: &[u8], storage: Storage, components: usize, extent: [usize; 3]) -> Vec<Plane> {
+/// The planes of a picture, until it is stopped, as components `R`, `G`, `B`, `A`. Unorm planes hold codes until [`finish`] decodes them.
+pub(super) fn unpack(
+    bytes: &[u8],
+    storage: Storage,
+    components: usize,
+    extent: [usize; 3],
+    cancel: &Cancel,
+) -> Vec<Plane> {
     let sample = Sample::of(storage);
     let names = if components == 1 { &["R"][..] } else { &["R", "G", "B", "A"][..] };
     let mut planes: Vec<Plane> = (0..components)
@@ -155,7 +163,7 @@ pub(super) fn unpack(bytes: &[u8], storage: Storage, components: usize, extent: 
         return planes;
     }
     let mut texel = vec![0.0; components];
-    for word in bytes.chunks_exact(size(storage, components)) {
+    for word in bytes.chunks_exact(size(storage, components)).take_while(|_| !cancel.is_set()) {
         take(storage, word, &mut texel);
         for (plane, &v) in planes.iter_mut().zip(&texel) {
             plane.values.push(v);

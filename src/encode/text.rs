@@ -57,8 +57,10 @@ impl Encoder for Text {
         let mut text = String::with_capacity(self.most_bytes(&input.shape()));
         for i in 0..input.values.len() {
             match i % IN_A_LINE {
-                _ if i == 0 => {}
-                0 => text.push_str(",\n"),
+                0 => {
+                    input.cancel.check()?;
+                    text.push_str(if i == 0 { "" } else { ",\n" });
+                }
                 _ => text.push_str(", "),
             }
             write(&mut text, input.values[place(i)], input.storage);

@@ -154,12 +154,12 @@ fn encode_output(
         storage,
         options: &options,
         provenance_json: &json,
+        cancel: source.cancel,
     };
-    let mut bytes = encoder.encode(&input).map_err(|error| PipelineError::Encode {
-        table: name,
-        output: label,
-        error,
-    })?;
+    let bytes = encoder.encode(&input);
+    // a library that is stopped tells of a fault of its own
+    source.cancel.check()?;
+    let mut bytes = bytes.map_err(|error| PipelineError::Encode { table: name, output: label, error })?;
     let [before, after] = &planned.around;
     if let Some(text) = before {
         bytes.splice(0..0, text.bytes());

@@ -1,7 +1,11 @@
 //! The library's token: every long loop looks at it, and two runs do not share it.
 
 use brdfbake::cancel::{Cancel, Cancelled};
-use brdfbake::encode::{Storage, Unstored, quantise_table_until};
+use brdfbake::encode::diff_files::{self, DiffError};
+use brdfbake::encode::read::{read_bytes_until, read_file_until};
+use brdfbake::encode::{
+    ENCODERS, EncodeError, EncodeInput, ReadError, Storage, Tolerance, Unstored, quantise_table_until,
+};
 use brdfbake::grid::fit::Samples;
 use brdfbake::grid::{Axis, Channel, Grid, Quantity, Table, Texel};
 use brdfbake::models;
@@ -112,6 +116,61 @@ fn blocks_stop() {
         assert!(quantise_table_until(&Cancel::new(), &table, storage).is_ok());
         let stopped = quantise_table_until(&set(), &table, storage);
         assert_eq!(stopped, Err(Unstored::Cancelled(Cancelled)), "{storage:?}");
+    }
+}
+
+/// A small table in every container, with the first storage of each.
+#[test]
+fn containers_stop() {
+    let axis = |id| Axis::new(Quantity::find(id).unwrap(), 16, Texel::Center);
+    let grid = Grid::new(vec![axis("mu"), axis("roughness")]).unwrap();
+    let channels =
+        vec![Channel { id: "x".into(), meaning: "x".into(), role: String::new(), range: [0.0, 1.0] }];
+    // numbers of every storage
+    let values: Vec<f64> = (0..256).map(|i| f64::from(i % 3 % 2)).collect();
+    let mut read = 0;
+    for encoder in ENCODERS {
+        let input = |cancel| EncodeInput {
+            grid: &grid,
+            channels: &channels,
+            values: &values,
+            blocks: &[],
+            errors: &[],
+            storage: encoder.storages()[0],
+            options: &[],
+            provenance_json: "{}",
+            cancel,
+        };
+        let (stop, go) = (set(), Cancel::new());
+        match encoder.encode(&input(&go)) {
+            Ok(bytes) if !encoder.magic().is_empty() => {
+                assert!(read_bytes_until(&go, &bytes).is_ok(), "{}", encoder.id());
+                let stopped = read_bytes_until(&stop, &bytes);
+                assert!(matches!(stopped, Err(ReadError::Cancelled(Cancelled))), "{}", encoder.id());
+                read += 1;
+            }
+            Ok(_) => {}
+            // it takes other axes
+            Err(e) => {
+                assert!(matches!(e, EncodeError::Axes { .. }), "{}: {e}", encoder.id());
+                continue;
+            }
+        }
+        let stopped = encoder.encode(&input(&stop));
+        assert!(matches!(stopped, Err(EncodeError::Cancelled(Cancelled))), "{}: {stopped:?}", encoder.id());
+    }
+    assert!(read >= 6, "{read} containers are read");
+}
+
+#[test]
+fn files_and_folders_stop() {
+    let dir = super::support::folder();
+    let path = dir.path().join("a.exr");
+    std::fs::write(&path, b"nothing").unwrap();
+    assert!(matches!(read_file_until(&set(), &path), Err(ReadError::Cancelled(Cancelled))));
+    for (a, b) in [(path.as_path(), path.as_path()), (dir.path(), dir.path())] {
+        let stopped = diff_files::paths_until(&set(), a, b, Tolerance::default());
+        assert!(matches!(stopped, Err(DiffError::Cancelled(Cancelled))), "{stopped:?}");
     }
 }
 

@@ -220,6 +220,7 @@ fn bytes_that_are_not_those_of_the_values_are_refused() {
         storage: Storage::Bc6h,
         options: &[],
         provenance_json: "{}",
+        cancel: &brdfbake::cancel::Cancel::new(),
     };
     let dds = encoder("dds").unwrap();
     let message = |input: &EncodeInput<'_>| match dds.encode(input) {

@@ -46,6 +46,7 @@ pub(crate) fn written(
         storage,
         options,
         provenance_json: &json,
+        cancel: &brdfbake::cancel::Cancel::new(),
     };
     Ok((encoder(container).unwrap().encode(&input)?, rounded.values))
 }

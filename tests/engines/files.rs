@@ -113,3 +113,22 @@ fn names_that_cannot_be_are_refused() {
     );
     assert!(two("", "file = 'A.exr'").contains("a table of this name writes files of its own"));
 }
+
+/// What is told of a table whose rows an engine reads one texel off is what the engine gets, not what the best reader would.
+#[test]
+fn the_report_of_an_engine_is_as_it_reads() {
+    let out = tempfile::tempdir().unwrap();
+    let baked = std::process::Command::new(env!("CARGO_BIN_EXE_brdfbake"))
+        .args(["bake", "--engine", "filament", "-o", out.path().to_str().unwrap()])
+        .output()
+        .unwrap();
+    let told = String::from_utf8(baked.stderr).unwrap();
+    assert!(baked.status.success(), "{told}");
+    let text = std::fs::read_to_string(out.path().join("manifest.json")).unwrap();
+    let manifest: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let mean = |key: &str| manifest["tables"][0]["files"][0][key]["practical"]["mean"].as_f64().unwrap();
+    let (engine, known) = (mean("as_read"), mean("reconstruction"));
+    assert!(engine > 3.0 * known, "{engine} and {known}");
+    let line = told.lines().find(|l| l.contains("as the engine reads it")).unwrap_or(&told);
+    assert!(line.contains(&format!("{engine:.1e} in the mean")), "{line}");
+}

@@ -185,6 +185,7 @@ fn files_hold_a_texel_in_its_place() {
                 storage,
                 options: &options,
                 provenance_json: "{}",
+                cancel: &brdfbake::cancel::Cancel::new(),
             };
             let bytes = encode::encoder(&planned.outputs[0].container).unwrap().encode(&input).unwrap();
             let found = read(&planned, &bytes, [width, height, slices], n);

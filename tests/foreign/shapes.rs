@@ -80,6 +80,7 @@ fn write_one(
         storage,
         options,
         provenance_json: &provenance_json,
+        cancel: &brdfbake::cancel::Cancel::new(),
     };
     let bytes = encoder.encode(&input).unwrap();
     let shape = Shape { grid, channels: channels.len(), storage, options };

@@ -95,6 +95,7 @@ pub(crate) fn file(encoder: &dyn Encoder, table: &Table, storage: Storage, p: &P
         storage,
         options: &[],
         provenance_json: &serde_json::to_string(p).unwrap(),
+        cancel: &brdfbake::cancel::Cancel::new(),
     };
     encoder.encode(&input).unwrap()
 }

@@ -220,6 +220,7 @@ fn what_does_not_fit_is_refused() {
         options: &[],
         storage: Storage::Float,
         provenance_json: "{}",
+        cancel: &Cancel::new(),
     };
     let error = brdfbake::encode::encoder("merl").unwrap().encode(&input).unwrap_err().to_string();
     assert!(error.starts_with("merl cannot hold these axes"), "{error}");

@@ -191,7 +191,9 @@ impl<S: Syntax> Encoder for Code<S> {
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
         input.check(self)?;
         let program = Program::new(input)?;
-        let file = self.0.file(&program.parts(&self.0));
+        let parts = program.parts(&self.0);
+        input.cancel.check()?;
+        let file = self.0.file(&parts);
         let mut text = program.comment(input);
         text.push('\n');
         text.push_str(&file);

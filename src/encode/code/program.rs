@@ -6,6 +6,7 @@
 
 use super::expression::{Expression, number};
 use super::{MOST_DIGITS, Parts, Syntax};
+use crate::cancel::Cancel;
 use crate::encode::{EncodeError, EncodeInput, Storage};
 use crate::grid::axis::count;
 use crate::grid::{Axis, Direction, Texel, Warp};
@@ -24,6 +25,7 @@ pub(super) struct Program<'a> {
     values: &'a [f64],
     channels: usize,
     double: bool,
+    cancel: &'a Cancel,
 }
 
 impl Program<'_> {
@@ -39,6 +41,7 @@ impl Program<'_> {
             values: input.values,
             channels: input.channels.len(),
             double: input.storage == Storage::Double,
+            cancel: input.cancel,
         })
     }
 
@@ -57,13 +60,14 @@ impl Program<'_> {
         lines.join("\n")
     }
 
-    /// The parts in a language.
+    /// The parts in a language; not all numbers if it is stopped.
     pub(super) fn parts(&self, syntax: &dyn Syntax) -> Parts<'_> {
         let suffix = syntax.suffix(self.double);
         let mut numbers =
             String::with_capacity(self.values.len() * (MOST_DIGITS[usize::from(self.double)] + 4));
         for (i, v) in self.values.iter().enumerate() {
             let before = match i % IN_A_LINE {
+                0 if self.cancel.is_set() => break,
                 _ if i == 0 => "    ",
                 0 => ",\n    ",
                 _ => ", ",
