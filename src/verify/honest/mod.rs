@@ -143,7 +143,7 @@ impl<'a> Rules<'a> {
         let (case, spec) = (self.case, self.case.spec());
         let point = case.table.grid.texel(texel);
         let n = case.table.channels.len();
-        let targets: Vec<f64> = (0..n).map(|c| 0.5 * self.limit(texel, c)).collect();
+        let targets: Vec<f64> = (0..n).map(|c| 0.8 * self.limit(texel, c)).collect();
         let ask = |route| {
             let asked = Asked {
                 spec,
@@ -160,7 +160,8 @@ impl<'a> Rules<'a> {
         let mut judged = true;
         for (c, channel) in spec.layout.channels.iter().enumerate().filter(|(_, c)| has_rule(c.role)) {
             let mut verdict = self.verdict(texel, c, first[c]);
-            if !matches!(verdict, Verdict::Margin(margin, _) if margin >= 0.0) {
+            // one sum may be short of a lobe: before a value is blamed another one is asked
+            if matches!(verdict, Verdict::Margin(margin, _) if margin < 0.0) || first[c].is_none() {
                 let again = second.get_or_insert_with(|| ask(Route::Second))[c];
                 verdict = self.settle(verdict, self.verdict(texel, c, again));
             }
