@@ -90,7 +90,8 @@ pub(super) fn integrate(
     let whole = [(1.0, model)];
     let parts = model.parts().filter(|_| route == Route::Second && flux == Flux::Reflected);
     let mut truths = vec![Truth { value: 0.0, error: 0.0 }; functionals.len()];
-    let budget = Cell::new(BUDGET);
+    // a lobe that turns is added up over four quarters, and is steep in both tangents
+    let budget = Cell::new(if model.turns() { 4 * BUDGET } else { BUDGET });
     for &(factor, part) in parts.as_deref().unwrap_or(&whole) {
         if factor <= 0.0 {
             continue;

@@ -65,7 +65,7 @@ impl Models {
                 break;
             }
             // quotients magnify: ask for what they need
-            let excess = |(c, t): (usize, &Option<Truth>)| t.map_or(0.0, |t| t.error / (1.2 * target(c)));
+            let excess = |(c, t): (usize, &Option<Truth>)| t.map_or(0.0, |t| t.error / (1.05 * target(c)));
             let worst = truths.iter().enumerate().map(excess).fold(0.0, f64::max);
             if worst <= 1.0 || !worst.is_finite() {
                 break;
