@@ -200,6 +200,8 @@ fn line(event: &Event<'_>) -> Option<String> {
             encoding,
             reconstruction,
             missed,
+            laws,
+            verified,
             bake_seconds,
             check_seconds,
             ..
@@ -221,6 +223,9 @@ fn line(event: &Event<'_>) -> Option<String> {
             if *missed > 0 {
                 text.push_str(&format!(", {missed} texels above the tolerance"));
             }
+            let held = laws.iter().filter(|l| l.held()).count();
+            let verdict = if *verified { "verified" } else { "NOT verified" };
+            text.push_str(&format!("; {held} of {} laws held, {verdict}", laws.len()));
             text.push_str(&format!(" [{:.0} ms + {:.0} ms]", bake_seconds * 1e3, check_seconds * 1e3));
             // the same for every output, as a rule: said once
             if let Some(r) = reconstruction.iter().find(|r| !r.advice.is_empty()) {

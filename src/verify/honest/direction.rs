@@ -16,6 +16,9 @@ use std::sync::{Mutex, PoisonError};
 /// Roundings of a value in closed form.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
+/// Most steps of Newton's method from a baked angle.
+const STEPS: usize = 3;
+
 /// Most panels of a sum over the polar angle, and of one over the azimuth.
 const MOST: [usize; 2] = [48, 64];
 
@@ -155,39 +158,50 @@ impl Directions {
         let seen = see(&*model, self.lobes.view(lobe, asked.at));
         let at = |id: &str| asked.spec.axis(id).map(|i| asked.at[i]);
         let (u, v) = (at("u")?, at("v")?);
-        let [theta, phi] = angles(asked, &seen)?;
-        // the polar angle: by what its distribution misses; its slope need not be sharp
+        let [mut theta, mut phi] = angles(asked, &seen)?;
+        // the polar angle: by what its distribution misses; its slope need not be sharp, but then a far step is taken twice
         let slope_at = |theta: f64| {
             let (sin, cos) = libm::sincos(theta);
             sin * cos * seen.around(theta, TAU, f64::INFINITY).value[0]
         };
-        let slope = slope_at(theta);
-        if slope.is_nan() || slope <= 0.0 {
-            return None;
+        let mut theta_error = f64::INFINITY;
+        for _ in 0..STEPS {
+            let slope = slope_at(theta);
+            if slope.is_nan() || slope <= 0.0 {
+                return None;
+            }
+            let aim = (0.2 * target * slope).max(1e-13);
+            let (whole, whole_error) = self.albedo(&seen, asked, power_of_two(aim));
+            let (part, part_error) = seen.up_to(theta, aim);
+            let step = (part - u * whole) / slope;
+            let bent = bend(step, |x| slope_at(theta - x) / slope);
+            theta_error = (part_error + u * whole_error) / slope + bent;
+            theta -= step;
+            if bent <= 0.1 * target {
+                break;
+            }
         }
-        let aim = (0.2 * target * slope).max(1e-13);
-        let (whole, whole_error) = self.albedo(&seen, asked, power_of_two(aim));
-        let (part, part_error) = seen.up_to(theta, aim);
-        let step = (part - u * whole) / slope;
-        let theta_error =
-            (part_error + u * whole_error) / slope + bend(step, |x| slope_at(theta - x) / slope);
-        let theta = theta - step;
         // the azimuth at that angle
-        let density = seen.at(theta, phi);
-        if density.is_nan() || density <= 0.0 {
-            return None;
+        let mut phi_error = f64::INFINITY;
+        for _ in 0..STEPS {
+            let density = seen.at(theta, phi);
+            if density.is_nan() || density <= 0.0 {
+                return None;
+            }
+            let aim = (0.2 * target * density).max(1e-13);
+            let missed = |theta: f64| {
+                let (turn, some) = (seen.around(theta, TAU, aim), seen.around(theta, phi, aim));
+                (some.value[0] - v * turn.value[0], some.error[0] + v * turn.error[0])
+            };
+            let (miss, miss_error) = missed(theta);
+            let step = miss / density;
+            let bent = bend(step, |x| seen.at(theta, phi - x) / density);
+            phi_error = (miss_error + (missed(theta + theta_error).0 - miss).abs()) / density + bent;
+            phi -= step;
+            if bent <= 0.1 * target {
+                break;
+            }
         }
-        let aim = (0.2 * target * density).max(1e-13);
-        let missed = |theta: f64| {
-            let (turn, some) = (seen.around(theta, TAU, aim), seen.around(theta, phi, aim));
-            (some.value[0] - v * turn.value[0], some.error[0] + v * turn.error[0])
-        };
-        let (miss, miss_error) = missed(theta);
-        let step = miss / density;
-        let phi_error = miss_error / density
-            + (missed(theta + theta_error).0 - miss).abs() / density
-            + bend(step, |x| seen.at(theta, phi - x) / density);
-        let phi = phi - step;
         Some(Drawn { wi: seen.light(theta, phi), theta, phi, error: [theta_error, phi_error] })
     }
 }

@@ -12,6 +12,7 @@ use crate::integrate::sobol::replicate_mean;
 use crate::models::{Brdf, Btdf};
 use crate::tables::integral::Functional;
 use glam::{DVec2, DVec3};
+use std::cell::Cell;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Which light is added up.
@@ -36,7 +37,12 @@ pub(super) struct Wanted<'a> {
     pub(super) eta: f64,
     /// Error to aim at.
     pub(super) target: f64,
+    /// Values of the lobe that are left to spend.
+    pub(super) budget: &'a Cell<u32>,
 }
+
+/// Values of a lobe that one integral may take: what is dearer is not checked.
+pub(super) const BUDGET: u32 = 300_000;
 
 /// A view in the horizon stands for the limit of grazing views.
 const JUST_ABOVE: f64 = 1e-150;
@@ -45,7 +51,7 @@ const JUST_ABOVE: f64 = 1e-150;
 const DRAWS: [u32; 2] = [16, 512];
 
 /// Most panels of an outer and of an inner sum.
-const MOST: [usize; 2] = [64, 128];
+const MOST: [usize; 2] = [48, 96];
 
 /// Angles of half vectors that are looked at along an azimuth, from the least one on, and azimuths of half a turn.
 const LOOKS: [u32; 2] = [24, 8];
@@ -155,7 +161,8 @@ impl Wanted<'_> {
             let near = Spread::new(if from > 0.0 { 0.05 } else { (2.0 * narrow / length).min(1.0) });
             let far = Spread::new(0.05);
             let rows: &[f64] = if again { &[0.0, 0.55, 1.0, 1.45, 2.0] } else { &[0.0, 1.0, 2.0] };
-            let sum = quad::integrate(rows, self.channels(), &[target; WIDE], MOST[1], &mut |y| {
+            let most = if self.budget.get() > 0 { MOST[1] } else { 0 };
+            let sum = quad::integrate(rows, self.channels(), &[target; WIDE], most, &mut |y| {
                 let (part, slope) = if y < 1.0 { near.at(y) } else { far.at(2.0 - y) };
                 let step = 0.5 * length * part;
                 let t = if y < 1.0 { from + step } else { to - step };
@@ -190,6 +197,7 @@ impl Wanted<'_> {
 
     /// The integrand at a half vector at angle `t` to the normal and `psi` to the plane of the view.
     fn facet(&self, wo: DVec3, psi: f64, t: f64) -> Sum {
+        self.budget.set(self.budget.get().saturating_sub(1));
         let (sin, cos) = libm::sincos(t);
         let (sin_p, cos_p) = libm::sincos(self.view.phi + psi);
         let wh = DVec3::new(sin * cos_p, sin * sin_p, cos);

@@ -1,12 +1,13 @@
 //! Integrals of a lobe at a view, mirrors and sums of lobes included, and their means over the hemisphere.
 
-use super::hemisphere::{Flux, Wanted};
+use super::hemisphere::{BUDGET, Flux, Wanted};
 use super::quad::{self, WIDE};
 use super::weight::weight;
 use super::{Route, Truth};
 use crate::integrate::View;
 use crate::models::Brdf;
 use crate::tables::integral::Functional;
+use std::cell::Cell;
 use std::f64::consts::FRAC_PI_2;
 
 /// Rounding of a value in closed form.
@@ -89,12 +90,14 @@ pub(super) fn integrate(
     let whole = [(1.0, model)];
     let parts = model.parts().filter(|_| route == Route::Second && flux == Flux::Reflected);
     let mut truths = vec![Truth { value: 0.0, error: 0.0 }; functionals.len()];
+    // a lobe that turns is added up over four quarters, and is steep in both tangents
+    let budget = Cell::new(if model.turns() { 4 * BUDGET } else { BUDGET });
     for &(factor, part) in parts.as_deref().unwrap_or(&whole) {
         if factor <= 0.0 {
             continue;
         }
         let share = aim / factor / parts.as_ref().map_or(1.0, |p| p.len() as f64);
-        let wanted = Wanted { model: part, view, flux, functionals, eta, target: share };
+        let wanted = Wanted { model: part, view, flux, functionals, eta, target: share, budget: &budget };
         let sum = match (part.mirror(view.mu), route) {
             (Some(_), _) => {
                 let known = integrate(part, view, flux, functionals, How { aim: share, ..how })?;

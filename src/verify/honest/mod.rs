@@ -42,6 +42,9 @@ pub static LAW: Law = Law {
 const ESTIMATES: f64 = 3.0;
 const ROUNDING: f64 = 1e-13;
 
+/// How many times its own estimate the error of a rule is taken to be: at kinks that it does not know its two sums agree too soon.
+const DOUBT: f64 = 2.0;
+
 /// Largest part of the texels that no rule could judge for which the law still counts as checked.
 const LOST: f64 = 0.05;
 
@@ -93,10 +96,6 @@ struct Asked<'a> {
     route: Route,
 }
 
-/// How many times its own estimate the error of a rule may be before it blames a value: at kinks that it does not know two of its
-/// levels agree too soon.
-const DOUBT: f64 = 2.0;
-
 /// The rules of a table.
 struct Rules<'a> {
     case: &'a Case<'a>,
@@ -143,7 +142,7 @@ impl<'a> Rules<'a> {
         let (case, spec) = (self.case, self.case.spec());
         let point = case.table.grid.texel(texel);
         let n = case.table.channels.len();
-        let targets: Vec<f64> = (0..n).map(|c| 0.5 * self.limit(texel, c)).collect();
+        let targets: Vec<f64> = (0..n).map(|c| 0.9 / DOUBT * self.limit(texel, c)).collect();
         let ask = |route| {
             let asked = Asked {
                 spec,
@@ -160,7 +159,8 @@ impl<'a> Rules<'a> {
         let mut judged = true;
         for (c, channel) in spec.layout.channels.iter().enumerate().filter(|(_, c)| has_rule(c.role)) {
             let mut verdict = self.verdict(texel, c, first[c]);
-            if !matches!(verdict, Verdict::Margin(margin, _) if margin >= 0.0) {
+            // one sum may be short of a lobe: before a value is blamed another one is asked
+            if matches!(verdict, Verdict::Margin(margin, _) if margin < 0.0) || first[c].is_none() {
                 let again = second.get_or_insert_with(|| ask(Route::Second))[c];
                 verdict = self.settle(verdict, self.verdict(texel, c, again));
             }
@@ -201,12 +201,12 @@ impl<'a> Rules<'a> {
     fn verdict(&self, texel: usize, channel: usize, truth: Option<Truth>) -> Verdict {
         let (v, e) = self.case.at(texel, channel);
         match truth {
-            Some(t) if t.value.is_finite() && t.error <= self.limit(texel, channel) => {
+            Some(t) if t.value.is_finite() && DOUBT * t.error <= self.limit(texel, channel) => {
                 let allowed = (ESTIMATES * e).max(ROUNDING * t.value.abs().max(1.0)) + DOUBT * t.error;
                 Verdict::Margin(allowed - (v - t.value).abs(), t)
             }
             Some(t) if t.value.is_finite() => {
-                Verdict::Unknown(format!("the independent rule is only sure to {:.1e}", t.error))
+                Verdict::Unknown(format!("the independent rule is only sure to {:.1e}", DOUBT * t.error))
             }
             _ => Verdict::Unknown("the independent rule has no value".to_owned()),
         }

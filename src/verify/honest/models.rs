@@ -59,11 +59,13 @@ impl Models {
             for (c, role) in roles.iter().enumerate() {
                 truths[c] = combine(*role, asked, &known);
             }
-            if asked.route == Route::Drawn {
+            // a sum that missed what it aimed at will not do better
+            let short = |(_, t): &(Base, Option<Truth>)| t.is_none_or(|t| t.error > 2.0 * aim);
+            if asked.route == Route::Drawn || known.iter().any(short) {
                 break;
             }
             // quotients magnify: ask for what they need
-            let excess = |(c, t): (usize, &Option<Truth>)| t.map_or(0.0, |t| t.error / (1.9 * target(c)));
+            let excess = |(c, t): (usize, &Option<Truth>)| t.map_or(0.0, |t| t.error / (1.05 * target(c)));
             let worst = truths.iter().enumerate().map(excess).fold(0.0, f64::max);
             if worst <= 1.0 || !worst.is_finite() {
                 break;
