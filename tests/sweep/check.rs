@@ -97,17 +97,17 @@ pub(crate) fn median(mut values: Vec<f64>) -> f64 {
 /// By the label of the row, in order, and tolerance.
 pub(crate) fn lines(labels: &[String], outcomes: &[Outcome]) -> Vec<Line> {
     let mut order: Vec<&str> = Vec::new();
-    let mut groups: BTreeMap<(usize, usize), Vec<&Outcome>> = BTreeMap::new();
+    let mut groups: BTreeMap<(usize, u64), Vec<&Outcome>> = BTreeMap::new();
     for o in outcomes {
         let id = labels[o.row].as_str();
         let place = order.iter().position(|m| *m == id).unwrap_or_else(|| {
             order.push(id);
             order.len() - 1
         });
-        let step = TOLERANCES.iter().position(|t| *t == o.tolerance).unwrap_or(0);
+        let step = o.tolerance.recip().to_bits();
         groups.entry((place, step)).or_default().push(o);
     }
-    let line = |(place, _): &(usize, usize), group: &Vec<&Outcome>| Line {
+    let line = |(place, _): &(usize, u64), group: &Vec<&Outcome>| Line {
         model: order[*place].to_owned(),
         tolerance: group[0].tolerance,
         count: group.len(),

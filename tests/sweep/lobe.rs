@@ -68,6 +68,12 @@ impl<'a> Lobe<'a> {
     }
 }
 
+/// A function of the pair and of what the lobe gives there.
+pub(crate) fn over<'a>(lobe: Lobe<'a>, of: impl Fn(&Pair, f64) -> f64 + Sync + 'a) -> Lobe<'a> {
+    let f = lobe.f;
+    Lobe { f: Box::new(move |p| of(p, f(p))), end: f64::INFINITY, ..lobe }
+}
+
 /// The Fresnel factor of a model by its parameters, and the cosines at which it is not smooth.
 pub(crate) fn fresnel(params: &Params) -> (Fresnel, Vec<f64>) {
     let eta = params.number("eta");
@@ -187,7 +193,8 @@ fn width(n: f64) -> f64 {
 }
 
 fn power(p: &Pair, n: f64) -> f64 {
-    (-0.5 * n * (p.r * p.r).ln_1p()).exp()
+    let log = if p.r < 1e100 { 0.5 * (p.r * p.r).ln_1p() } else { p.r.ln() };
+    (-n * log).exp()
 }
 
 /// `scale (n.wh)^n`, over mu_i if asked.

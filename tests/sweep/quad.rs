@@ -95,6 +95,9 @@ pub(crate) static COARSE: Setting =
 /// For the many values that a curve or an average takes.
 pub(crate) static MEDIUM: Setting =
     Setting { rule: &K15, tolerance: 1e-11, relative: 1e-12, panels: 1000, edges: &[0.0, 5.0, 14.0, 33.0] };
+/// To judge [`LOOSE`] by.
+pub(crate) static ROUGH: Setting =
+    Setting { rule: &K21, tolerance: 1e-7, relative: 1e-8, panels: 300, edges: &[0.0, 5.0, 13.0, 30.0] };
 /// For averages of what is itself dear.
 pub(crate) static LOOSE: Setting =
     Setting { rule: &K15, tolerance: 1e-9, relative: 1e-10, panels: 400, edges: &[0.0, 6.0, 15.0, 33.0] };

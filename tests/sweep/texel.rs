@@ -48,10 +48,19 @@ impl Texel {
         }
     }
 
+    /// With axes of so many texels; that of Gaussians counts them from 0.
+    pub(crate) fn bind_with(&self, len: usize) -> Bound {
+        self.bound(len).unwrap()
+    }
+
     pub(crate) fn bind(&self) -> Result<Bound, tables::BindError> {
+        self.bound(2)
+    }
+
+    fn bound(&self, len: usize) -> Result<Bound, tables::BindError> {
         let axis = |id: &String| {
-            let quantity = Quantity::find(id).unwrap();
-            Axis::new(quantity, 2, Place::Endpoint)
+            let axis = Axis::new(Quantity::find(id).unwrap(), len, Place::Endpoint);
+            if id == "gaussian" { axis.over([0.0, len as f64 - 1.0]) } else { axis }
         };
         let request = Request {
             kind: self.kind.clone(),
