@@ -2,6 +2,7 @@
 //!
 //! One test at a time: the allocator counts for the whole process.
 #![allow(clippy::unwrap_used, reason = "test")]
+#![allow(clippy::print_stderr, reason = "what was skipped is said")]
 
 mod sample;
 
@@ -249,6 +250,7 @@ fn measure_writing(encoder: &dyn Encoder, storage: Storage, options: &[FileOptio
         storage,
         options,
         provenance_json: "{\"name\": \"x\"}",
+        cancel: &Cancel::new(),
     };
     let what = format!("{}:{} {options:?}, {channels} channels", encoder.id(), storage.id());
     let (taken, file) = peak(|| encoder.encode(&input).unwrap());

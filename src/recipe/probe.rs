@@ -62,7 +62,7 @@ fn unclaimed(planned: &PlannedTable) -> Option<Fault> {
     let sweep = Sweep::new(spec, matches!(spec.kind.model, ModelUse::Split(_))).ok()?;
     let fault = |laws: &[&'static str], what: String| {
         let laws: Vec<&'static str> = laws.iter().copied().filter(|law| checked(law)).collect();
-        (!laws.is_empty()).then(|| Fault::Unclaimed { model: info.id, kind: spec.kind.id, laws, what })
+        (!laws.is_empty()).then_some(Fault::Unclaimed { model: info.id, kind: spec.kind.id, laws, what })
     };
     let per_axis = LAWS[spec.grid.axes().len().clamp(1, LAWS.len()) - 1];
     for texel in texels(planned, per_axis) {

@@ -62,10 +62,14 @@ impl TableInfo {
         if self.coordinates.contains(&base) {
             return Some(axis);
         }
-        let split = matches!(self.model, ModelUse::Split(_));
-        let other = swept(axis, model)
-            .filter(|a| !std::mem::replace(replaced, true) && !(split && a.quantity.id == "f0"));
-        other
+        if *replaced {
+            return None;
+        }
+        let other = swept(axis, model)?;
+        *replaced = true;
+        // a split part has its Fresnel factor outside the table
+        let idle = matches!(self.model, ModelUse::Split(_)) && other.quantity.id == "f0";
+        (!idle).then_some(other)
     }
 }
 
