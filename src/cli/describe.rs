@@ -208,7 +208,7 @@ fn format(e: &'static dyn Encoder) -> String {
 }
 
 fn quantity(q: &'static Quantity) -> String {
-    let base = q.base.as_ref().map_or_else(String::new, |b| format!("\n{}", b.formula));
+    let base = q.base_formula().map_or_else(String::new, |f| format!("\n{f}"));
     format!(
         "quantity {}, symbol {}, unit {}\n{}; domain {}{base}\n",
         q.id,

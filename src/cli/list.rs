@@ -84,7 +84,7 @@ fn rows(what: What) -> Vec<(String, String)> {
         What::Quantities => QUANTITIES
             .iter()
             .map(|q| {
-                let base = q.base.as_ref().map_or_else(String::new, |b| format!(" ({})", b.formula));
+                let base = q.base_formula().map_or_else(String::new, |f| format!(" ({f})"));
                 (q.id.to_owned(), format!("{}{base}", q.meaning))
             })
             .collect(),

@@ -6,7 +6,9 @@
 //! * descending: `x -> 1 - x`, so that index 0 holds the high end of the domain.
 //! * `value = lo + (hi - lo) inverse_warp(x)`, then clamped to `clamp` if one is given.
 
+use super::expression::{Expression, Formula};
 use super::quantity::{Quantity, by_id};
+use super::scalar::{Scalar, Slope};
 use super::warp::Warp;
 use crate::math::figures::exact;
 use serde::{Deserialize, Serialize};
@@ -203,41 +205,58 @@ impl Axis {
         self.value_at(self.coordinate(count(index)), coupled)
     }
 
-    /// The texture coordinate that a shader computes, as a formula.
+    /// Axis coordinate in [0, 1] of a value, clamped to the domain: the inverse of [`Axis::value_at`].
     #[must_use]
-    pub fn coordinate_formula(&self) -> String {
-        let symbol = self.quantity.id;
+    pub fn coordinate_of<S: Scalar>(&self, value: S, coupled: S) -> S {
         let [lo, hi] = self.domain;
-        let v = match (lo.abs() == 0.0, (hi - lo - 1.0).abs() == 0.0) {
-            (true, true) => symbol.to_owned(),
-            (true, false) => format!("{symbol} / {}", exact(hi)),
-            _ => format!("({symbol} - {}) / {}", exact(lo), exact(hi - lo)),
-        };
-        let simple = v == symbol || matches!(self.warp, Warp::Linear);
-        let x = if simple { self.warp.expression(&v) } else { self.warp.expression(&format!("({v})")) };
-        let x = if self.direction == Direction::Descending { format!("1 - ({x})") } else { x };
-        let shift = if self.offset.abs() == 0.0 {
-            String::new()
-        } else {
-            format!(" - {} / {}", exact(self.offset), self.len)
-        };
-        let words = self.warp.words();
+        let v = value.minus(S::number(lo)).over(S::number(hi - lo));
+        self.spread(v.at_least(0.0).at_most(1.0), coupled)
+    }
+
+    /// Axis coordinate of a value over the domain.
+    fn spread<S: Scalar>(&self, v: S, coupled: S) -> S {
+        let x = self.warp.forward(v, coupled);
+        if self.direction == Direction::Descending { S::number(1.0).minus(x) } else { x }
+    }
+
+    /// Fractional index of an axis coordinate; not clamped to the texels.
+    #[must_use]
+    pub fn index_at<S: Scalar>(&self, x: S) -> S {
         match self.texel {
-            Texel::Center => format!("{x}{shift}{words}"),
-            Texel::Endpoint => format!("(({x}) * {} + 0.5) / {}{shift}{words}", self.len - 1, self.len),
+            Texel::Center => {
+                x.times(S::number(count(self.len))).minus(S::number(0.5)).minus(S::number(self.offset))
+            }
+            Texel::Endpoint => x.times(S::number(count(self.len - 1))).minus(S::number(self.offset)),
         }
     }
 
     /// Fractional index at which a reader finds `value`: the inverse of [`Axis::value`], not clamped to the texels.
     #[must_use]
     pub fn index(&self, value: f64, coupled: f64) -> f64 {
+        self.index_at(self.coordinate_of(value, coupled))
+    }
+
+    /// Texels per unit of the quantity at a value: the derivative of [`Axis::index`].
+    #[must_use]
+    pub fn slope(&self, value: f64, coupled: f64) -> f64 {
+        self.index_at(self.coordinate_of(Slope { value, slope: 1.0 }, Slope::number(coupled))).slope
+    }
+
+    /// The texture coordinate that a shader computes from a value of the domain, as a formula in the ids of this quantity and of the
+    /// base quantity of a coupling; see [`Formula`]. A reader clamps it to [0, 1].
+    #[must_use]
+    pub fn coordinate_formula(&self) -> String {
         let [lo, hi] = self.domain;
-        let x = self.warp.forward(((value - lo) / (hi - lo)).clamp(0.0, 1.0), coupled);
-        let x = if self.direction == Direction::Descending { 1.0 - x } else { x };
-        match self.texel {
-            Texel::Center => x * count(self.len) - 0.5 - self.offset,
-            Texel::Endpoint => x * count(self.len - 1) - self.offset,
-        }
+        let number = Expression::number;
+        let v = Expression::name(self.quantity.id).minus(number(lo)).over(number(hi - lo));
+        let coupled = Expression::name(self.warp.couples_to().unwrap_or_default());
+        let x = self.spread(v, coupled);
+        let len = count(self.len);
+        let place = match self.texel {
+            Texel::Center => x.minus(number(self.offset).over(number(len))),
+            Texel::Endpoint => x.times(number(len - 1.0)).plus(number(0.5 - self.offset)).over(number(len)),
+        };
+        place.write(&Formula, true)
     }
 }
 

@@ -4,11 +4,13 @@
 //! reports, so that no two of them can disagree.
 
 pub mod axis;
+pub mod expression;
 pub mod fit;
 pub mod layout;
 pub mod lookup;
 pub mod provenance;
 pub mod quantity;
+pub mod scalar;
 pub mod table;
 pub mod warp;
 

@@ -115,7 +115,7 @@ pub struct AxisRecord {
     pub symbol: String,
     /// Unit.
     pub unit: String,
-    /// How a derived quantity becomes its base, such as `alpha = roughness^2`.
+    /// How a derived quantity becomes its base, such as `alpha = roughness * roughness`.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub base: Option<String>,
     /// The texture coordinate that a shader computes from a value.
@@ -129,7 +129,7 @@ impl AxisRecord {
         AxisRecord {
             symbol: axis.quantity.symbol.to_owned(),
             unit: axis.quantity.unit.to_owned(),
-            base: axis.quantity.base.as_ref().map(|b| b.formula.to_owned()),
+            base: axis.quantity.base_formula(),
             coordinate: axis.coordinate_formula(),
             axis: axis.clone(),
         }

@@ -1,5 +1,7 @@
 //! What an axis can measure. A derived quantity (`roughness`) is read into its base quantity (`alpha`) by a named map.
 
+use super::expression::{Expression, Formula};
+use super::scalar::Scalar;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -25,12 +27,51 @@ pub struct Quantity {
 pub struct Base {
     /// Id of the base quantity.
     pub id: &'static str,
-    /// The map in words: `alpha = roughness^2`.
-    pub formula: &'static str,
-    /// From this quantity to the base.
-    pub to: fn(f64) -> f64,
-    /// From the base to this quantity.
-    pub from: fn(f64) -> f64,
+    /// The map.
+    pub map: BaseMap,
+}
+
+/// A map from a derived quantity to its base, with its inverse.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BaseMap {
+    /// `x^2`.
+    Square,
+    /// `cos(x)`.
+    Cosine,
+    /// `(1 + x^2) / (1 - x^2)`: the index of refraction whose reflectance at normal incidence is `x^4`.
+    Root4OfF0,
+    /// `(1 - x^2) / (1 + x^2)`: the same from the denser side.
+    Root4OfF0Inverse,
+    /// `5 (1 - x) / x`.
+    SchlickZ,
+}
+
+impl BaseMap {
+    /// From the quantity to its base.
+    #[must_use]
+    pub fn to<S: Scalar>(self, x: S) -> S {
+        let one = || S::number(1.0);
+        let square = || x.clone().power(2.0);
+        match self {
+            BaseMap::Square => square(),
+            BaseMap::Cosine => x.cosine().at_least(0.0),
+            BaseMap::Root4OfF0 => one().plus(square()).over(one().minus(square())),
+            BaseMap::Root4OfF0Inverse => one().minus(square()).over(one().plus(square())),
+            BaseMap::SchlickZ => S::number(5.0).times(one().minus(x.clone())).over(x),
+        }
+    }
+
+    /// From the base to the quantity: the inverse of [`BaseMap::to`].
+    #[must_use]
+    pub fn from(self, base: f64) -> f64 {
+        match self {
+            BaseMap::Square => base.sqrt(),
+            BaseMap::Cosine => libm::acos(base),
+            BaseMap::Root4OfF0 => ((base - 1.0) / (base + 1.0)).max(0.0).sqrt(),
+            BaseMap::Root4OfF0Inverse => ((1.0 - base) / (1.0 + base)).max(0.0).sqrt(),
+            BaseMap::SchlickZ => 5.0 / (5.0 + base),
+        }
+    }
 }
 
 const UNBOUNDED: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
@@ -89,57 +130,42 @@ pub static QUANTITIES: &[Quantity] = &[
         "r",
         "artist's roughness",
         [0.0, 1.0],
-        Base { id: "alpha", formula: "alpha = roughness^2", to: |r| r * r, from: f64::sqrt },
+        Base { id: "alpha", map: BaseMap::Square },
     ),
     derived(
         "sheen_roughness",
         "r",
         "roughness of a sheen, as glTF has it",
         [0.0, 1.0],
-        Base { id: "alpha", formula: "alpha = sheen_roughness^2", to: |r| r * r, from: f64::sqrt },
+        Base { id: "alpha", map: BaseMap::Square },
     ),
     derived(
         "theta",
         "theta_o",
         "view angle to the normal, in radians",
         [0.0, FRAC_PI_2],
-        Base { id: "mu", formula: "mu = cos(theta)", to: |t| libm::cos(t).max(0.0), from: libm::acos },
+        Base { id: "mu", map: BaseMap::Cosine },
     ),
     derived(
         "f0_root4",
         "z",
         "fourth root of the dielectric F0",
         [0.0, 0.99],
-        Base {
-            id: "eta",
-            formula: "eta = (1 + z^2) / (1 - z^2)",
-            to: |z| (1.0 + z * z) / (1.0 - z * z),
-            from: |eta| ((eta - 1.0) / (eta + 1.0)).max(0.0).sqrt(),
-        },
+        Base { id: "eta", map: BaseMap::Root4OfF0 },
     ),
     derived(
         "f0_root4_inverse",
         "z",
         "fourth root of the dielectric F0, seen from the denser side",
         [0.0, 0.99],
-        Base {
-            id: "eta",
-            formula: "eta = (1 - z^2) / (1 + z^2)",
-            to: |z| (1.0 - z * z) / (1.0 + z * z),
-            from: |eta| ((1.0 - eta) / (1.0 + eta)).max(0.0).sqrt(),
-        },
+        Base { id: "eta", map: BaseMap::Root4OfF0Inverse },
     ),
     derived(
         "schlick_z",
         "z",
         "Schlick exponent on (0, 1]: 1 is a constant factor, 1/2 the usual 5",
         [1e-4, 1.0],
-        Base {
-            id: "exponent",
-            formula: "exponent = 5 (1 - z) / z",
-            to: |z| 5.0 * (1.0 - z) / z,
-            from: |e| 5.0 / (5.0 + e),
-        },
+        Base { id: "exponent", map: BaseMap::SchlickZ },
     ),
 ];
 
@@ -197,16 +223,26 @@ impl Quantity {
         self.base.as_ref().map_or(self.id, |b| b.id)
     }
 
+    /// The map to the base as an equation in the ids of both; none for a quantity that is its own base.
+    #[must_use]
+    pub fn base_formula(&self) -> Option<String> {
+        let base = self.base.as_ref()?;
+        Some(format!("{} = {}", base.id, base.map.to(Expression::name(self.id)).write(&Formula, true)))
+    }
+
     /// Value of the base quantity.
     #[must_use]
-    pub fn to_base(&self, value: f64) -> f64 {
-        self.base.as_ref().map_or(value, |b| (b.to)(value))
+    pub fn to_base<S: Scalar>(&self, value: S) -> S {
+        match &self.base {
+            Some(base) => base.map.to(value),
+            None => value,
+        }
     }
 
     /// Value of this quantity for a value of its base.
     #[must_use]
     pub fn from_base(&self, value: f64) -> f64 {
-        self.base.as_ref().map_or(value, |b| (b.from)(value))
+        self.base.as_ref().map_or(value, |b| b.map.from(value))
     }
 
     /// True where the quantity has no natural bounds of its own.

@@ -4,6 +4,7 @@
 //! A coupled warp depends on the value of another axis, which is how the corner (mu, alpha) -> (0, 0) of a GGX albedo
 //! is opened up.
 
+use super::scalar::Scalar;
 use crate::math::figures::exact;
 use serde::{Deserialize, Serialize};
 
@@ -33,19 +34,19 @@ pub enum Warp {
 }
 
 impl Warp {
-    /// Value to warped coordinate. `coupled` is the base value of the axis named by [`Warp::couples_to`].
+    /// Value in [0, 1] to warped coordinate. `coupled` is the base value of the axis named by [`Warp::couples_to`].
     #[must_use]
-    pub fn forward(&self, v: f64, coupled: f64) -> f64 {
+    pub fn forward<S: Scalar>(&self, v: S, coupled: S) -> S {
+        let one = || S::number(1.0);
         match self {
             Warp::Linear => v,
-            Warp::Power(p) => pow(v, *p),
-            Warp::OneMinusPower(p) => 1.0 - pow(1.0 - v, *p),
+            Warp::Power(p) => v.power(*p),
+            Warp::OneMinusPower(p) => one().minus(one().minus(v).power(*p)),
             Warp::Coupled { power, scale, exponent, .. } => {
-                let c = scale * pow(coupled, *exponent);
-                if v <= 0.0 {
-                    return 0.0;
-                }
-                pow(v * (1.0 + c) / (v + c), 1.0 / power)
+                let c = S::number(*scale).times(coupled.at_least(0.0).power(*exponent));
+                // v = c = 0 is 0
+                let ratio = v.clone().times(one().plus(c.clone())).over(v.plus(c).at_least(S::LEAST));
+                ratio.power(1.0 / power)
             }
         }
     }
@@ -55,11 +56,11 @@ impl Warp {
     pub fn inverse(&self, w: f64, coupled: f64) -> f64 {
         match self {
             Warp::Linear => w,
-            Warp::Power(p) => pow(w, 1.0 / p),
-            Warp::OneMinusPower(p) => 1.0 - pow(1.0 - w, 1.0 / p),
+            Warp::Power(p) => w.power(1.0 / p),
+            Warp::OneMinusPower(p) => 1.0 - (1.0 - w).power(1.0 / p),
             Warp::Coupled { power, scale, exponent, .. } => {
-                let c = scale * pow(coupled, *exponent);
-                let y = pow(w, *power);
+                let c = scale * coupled.at_least(0.0).power(*exponent);
+                let y = w.power(*power);
                 if y >= 1.0 {
                     return 1.0;
                 }
@@ -74,38 +75,6 @@ impl Warp {
         match self {
             Warp::Coupled { to, .. } => Some(to),
             _ => None,
-        }
-    }
-
-    /// The forward map as a formula in `symbol`, for reports and shader comments.
-    #[must_use]
-    pub fn formula(&self, symbol: &str) -> String {
-        format!("{}{}", self.expression(symbol), self.words())
-    }
-
-    /// What the names in [`Warp::expression`] stand for, to be written behind the whole formula.
-    pub(super) fn words(&self) -> String {
-        let Warp::Coupled { to, scale, exponent, .. } = self else { return String::new() };
-        let c = match (same(*scale, 1.0), same(*exponent, 1.0)) {
-            (true, true) => to.clone(),
-            (false, true) => format!("{} {to}", exact(scale)),
-            (true, false) => format!("{to}^{}", exact(exponent)),
-            (false, false) => format!("{} {to}^{}", exact(scale), exact(exponent)),
-        };
-        format!(", c = {c}")
-    }
-
-    /// The formula without what its names stand for: it may be a part of a larger one.
-    pub(super) fn expression(&self, symbol: &str) -> String {
-        match self {
-            Warp::Linear => symbol.to_owned(),
-            Warp::Power(p) if same(*p, 0.5) => format!("sqrt({symbol})"),
-            Warp::Power(p) => format!("{symbol}^{}", exact(p)),
-            Warp::OneMinusPower(p) if same(*p, 0.5) => format!("1 - sqrt(1 - {symbol})"),
-            Warp::OneMinusPower(p) => format!("1 - (1 - {symbol})^{}", exact(p)),
-            Warp::Coupled { power, .. } => {
-                format!("({symbol} (1 + c) / ({symbol} + c))^(1/{})", exact(power))
-            }
         }
     }
 
@@ -124,26 +93,4 @@ impl Warp {
             }
         }
     }
-}
-
-/// `x^p` for x >= 0, exact where a root or a product does.
-fn pow(x: f64, p: f64) -> f64 {
-    let x = x.max(0.0);
-    if same(p, 1.0) {
-        x
-    } else if same(p, 2.0) {
-        x * x
-    } else if same(p, 0.5) {
-        x.sqrt()
-    } else if same(p, 4.0) {
-        (x * x) * (x * x)
-    } else if same(p, 0.25) {
-        x.sqrt().sqrt()
-    } else {
-        libm::pow(x, p)
-    }
-}
-
-fn same(a: f64, b: f64) -> bool {
-    (a - b).abs() == 0.0
 }

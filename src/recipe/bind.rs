@@ -341,8 +341,8 @@ fn check_swept(entry: &Entry, bound: &Bound, faults: &mut Faults) {
             if low < min - ROUNDING * min.abs() || high > max + ROUNDING * max.abs() {
                 let [lo, hi] = quantity.domain;
                 let [least, most] = quantity.interval_from_base([min, max]);
-                let map = quantity.base.as_ref().map(|b| {
-                    format!("{}, its {} from {} to {}", b.formula, param.id, number(min), number(max))
+                let map = quantity.base_formula().map(|formula| {
+                    format!("{formula}, its {} from {} to {}", param.id, number(min), number(max))
                 });
                 let allowed = [least.max(lo), most.min(hi)];
                 let fault = Fault::SweptRange { axis: quantity.id, got, owner, allowed, map };

@@ -11,7 +11,6 @@
 
 mod c;
 mod cpp;
-mod expression;
 mod glsl;
 mod hlsl;
 mod js;
@@ -30,19 +29,25 @@ pub use wgsl::Wgsl;
 
 use super::text::MOST_DIGITS;
 use super::{EncodeError, EncodeInput, Encoder, Shape, Storage};
-pub(crate) use expression::Expression;
+use crate::grid::expression::{Call, Function, Notation};
 use program::Program;
 pub(crate) use program::coordinates;
 use std::fmt::Debug;
 
-/// Functions that an expression calls.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Function {
-    Sqrt,
-    Pow,
-    Cos,
-    Min,
-    Max,
+/// A number with a point or an exponent, the shortest that reads back to the same bits.
+#[allow(clippy::cast_possible_truncation, reason = "the program computes in f32")]
+fn number(v: f64, double: bool) -> String {
+    if double { format!("{v:?}") } else { format!("{:?}", v as f32) }
+}
+
+impl Notation for dyn Syntax + '_ {
+    fn number(&self, v: f64, double: bool) -> String {
+        format!("{}{}", number(v, double), self.suffix(double))
+    }
+
+    fn call(&self, call: &Call<'_>) -> String {
+        Syntax::call(self, call)
+    }
 }
 
 /// How a language writes what a program says. Infix operators are the same in all of them.
@@ -97,14 +102,6 @@ pub trait Syntax: Debug + Send + Sync + 'static {
     /// The file, but for the comments above it.
     #[doc(hidden)]
     fn file(&self, parts: &Parts<'_>) -> String;
-}
-
-/// A call of a function.
-#[derive(Debug)]
-pub struct Call<'a> {
-    pub(super) function: Function,
-    pub(super) arguments: &'a [String],
-    pub(super) double: bool,
 }
 
 /// The parts of a file.
@@ -190,7 +187,7 @@ impl<S: Syntax> Encoder for Code<S> {
 
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
         input.check(self)?;
-        let program = Program::new(input)?;
+        let program = Program::new(input);
         let parts = program.parts(&self.0);
         input.cancel.check()?;
         let file = self.0.file(&parts);

@@ -4,12 +4,13 @@
 //! far it is from the first to the second. Then for every corner `k` of the cell its weight `wk` and the place `ak` of
 //! its first channel.
 
-use super::expression::{Expression, number};
-use super::{MOST_DIGITS, Parts, Syntax};
+use super::{MOST_DIGITS, Parts, Syntax, number};
 use crate::cancel::Cancel;
-use crate::encode::{EncodeError, EncodeInput, Storage};
+use crate::encode::{EncodeInput, Storage};
 use crate::grid::axis::count;
-use crate::grid::{Axis, Direction, Texel, Warp};
+use crate::grid::Axis;
+use crate::grid::expression::Expression;
+use crate::grid::scalar::Scalar;
 use std::fmt::Write;
 
 /// Numbers in a line of the array.
@@ -29,11 +30,11 @@ pub(super) struct Program<'a> {
 }
 
 impl Program<'_> {
-    /// The program of a table; refused if an axis sweeps a quantity whose map to its base is not known here.
-    pub(super) fn new<'a>(input: &EncodeInput<'a>) -> Result<Program<'a>, EncodeError> {
+    /// The program of a table.
+    pub(super) fn new<'a>(input: &EncodeInput<'a>) -> Program<'a> {
         let axes = input.grid.axes();
-        let indices = indices(axes, false)?;
-        Ok(Program {
+        let indices = indices(axes, false);
+        Program {
             name: identifier(input.provenance_json),
             arguments: axes.iter().map(|a| a.quantity.id).collect(),
             indices,
@@ -42,7 +43,7 @@ impl Program<'_> {
             channels: input.channels.len(),
             double: input.storage == Storage::Double,
             cancel: input.cancel,
-        })
+        }
     }
 
     /// The provenance, then what the arguments and results are: line comments, in ASCII.
@@ -136,71 +137,28 @@ fn offset(corner: usize, channel: usize) -> String {
     if channel == 0 { format!("a{corner}") } else { format!("a{corner} + {channel}") }
 }
 
-/// Fractional index on each axis; see [`coordinates`].
-pub(super) fn indices(axes: &[Axis], clamped: bool) -> Result<Vec<Expression>, EncodeError> {
-    Ok(axes.iter().zip(coordinates(axes, clamped)?).map(|(axis, x)| index(axis, x)).collect())
+/// Fractional index on each axis, clamped to the texels; see [`coordinates`].
+pub(super) fn indices(axes: &[Axis], clamped: bool) -> Vec<Expression> {
+    let index = |(axis, x): (&Axis, Expression)| axis.index_at(x).at_least(0.0).at_most(count(axis.len - 1));
+    axes.iter().zip(coordinates(axes, clamped)).map(index).collect()
 }
 
-/// Axis coordinates in [0, 1] as expressions in the axes' own quantities; refused if a quantity has no map to its base here.
+/// Axis coordinates in [0, 1] as expressions in the axes' own quantities.
 /// `clamped`: what lies outside of a domain counts as its end in couplings too.
-pub(crate) fn coordinates(axes: &[Axis], clamped: bool) -> Result<Vec<Expression>, EncodeError> {
+pub(crate) fn coordinates(axes: &[Axis], clamped: bool) -> Vec<Expression> {
     let one = |axis: &Axis| {
-        let coupled = match axis.warp.couples_to() {
-            None => Expression::Number(0.0),
-            Some(base) => match axes.iter().find(|a| a.quantity.base_id() == base) {
-                Some(other) if clamped => {
-                    let [lo, hi] = other.domain;
-                    to_base(other, Expression::name(other.quantity.id).clamp(lo, hi))?
-                }
-                Some(other) => to_base(other, Expression::name(other.quantity.id))?,
-                None => Expression::name(base),
-            },
+        let base = axis.warp.couples_to().unwrap_or_default();
+        let coupled = match axes.iter().find(|a| a.quantity.base_id() == base) {
+            Some(other) => {
+                let [lo, hi] = other.domain;
+                let value = Expression::name(other.quantity.id);
+                other.quantity.to_base(if clamped { value.at_least(lo).at_most(hi) } else { value })
+            }
+            None => Expression::name(base),
         };
-        Ok(coordinate(axis, coupled))
+        axis.coordinate_of(Expression::name(axis.quantity.id), coupled)
     };
     axes.iter().map(one).collect()
-}
-
-/// The axis coordinate of a value, clamped to the domain.
-fn coordinate(axis: &Axis, coupled: Expression) -> Expression {
-    use Expression::Number;
-    let [lo, hi] = axis.domain;
-    let v = Expression::name(axis.quantity.id).minus(Number(lo)).over(Number(hi - lo)).clamp(0.0, 1.0);
-    let x = match &axis.warp {
-        Warp::Linear => v,
-        Warp::Power(p) => v.pow(*p),
-        Warp::OneMinusPower(p) => Number(1.0).minus(Number(1.0).minus(v).pow(*p)),
-        Warp::Coupled { power, scale, exponent, .. } => {
-            let c = Number(*scale).times(coupled.max(0.0).pow(*exponent));
-            // v = c = 0 is 0; any other pair is far above the smallest divisor
-            let ratio = v.clone().times(Number(1.0).plus(c.clone())).over(v.plus(c).max(1e-30));
-            ratio.pow(1.0 / power)
-        }
-    };
-    if axis.direction == Direction::Descending { Number(1.0).minus(x) } else { x }
-}
-
-/// [`Axis::index`] as an expression, clamped to the texels.
-fn index(axis: &Axis, x: Expression) -> Expression {
-    use Expression::Number;
-    let last = count(axis.len - 1);
-    let place = match axis.texel {
-        Texel::Center => x.times(Number(count(axis.len))).minus(Number(0.5 + axis.offset)),
-        Texel::Endpoint => x.times(Number(last)).minus(Number(axis.offset)),
-    };
-    place.clamp(0.0, last)
-}
-
-/// The base quantity of an axis, from its own.
-fn to_base(axis: &Axis, v: Expression) -> Result<Expression, EncodeError> {
-    let one = || Expression::Number(1.0);
-    match axis.quantity.id {
-        id if id == axis.quantity.base_id() => Ok(v),
-        "roughness" | "sheen_roughness" => Ok(v.pow(2.0)),
-        "theta" => Ok(v.cos().max(0.0)),
-        "f0_root4" => Ok(one().plus(v.clone().pow(2.0)).over(one().minus(v.pow(2.0)))),
-        id => Err(EncodeError::Name { id: id.to_owned(), fault: "has no map to its base quantity in code" }),
-    }
 }
 
 /// The name of the table as an identifier of every language.

@@ -1,11 +1,12 @@
 //! Lines for a shader that reads a table as a texture: texture coordinates from the quantities of the axes, and values
 //! from what the sampler returns. Two functions, `NAME_uv` and `NAME_decode`; the sampling stays the engine's own.
 
-use super::expression::Expression;
 use super::program::{indices, name_of};
 use super::{Glsl, Hlsl, Syntax, Wgsl};
 use crate::encode::EncodeError;
 use crate::grid::Grid;
+use crate::grid::expression::Expression;
+use crate::grid::scalar::Scalar;
 use crate::grid::axis::count;
 
 /// Languages that read textures.
@@ -37,7 +38,7 @@ pub enum Decode {
 ///
 /// # Errors
 /// [`EncodeError::Unknown`] for another language, [`EncodeError::Axes`] for a table that is no picture,
-/// [`EncodeError::Channels`] for more than four channels, [`EncodeError::Name`] for an axis whose map is not known in code.
+/// [`EncodeError::Channels`] for more than four channels.
 pub fn lines(
     name: &str,
     grid: &Grid,
@@ -75,7 +76,7 @@ fn coordinates(name: &str, grid: &Grid, syntax: &dyn Syntax) -> Result<Lines, En
         return Err(EncodeError::Axes { format: syntax.id(), fault: "a picture has two" });
     }
     let mut body = String::new();
-    for (n, index) in indices(axes, true)?.iter().enumerate() {
+    for (n, index) in indices(axes, true).iter().enumerate() {
         let line = syntax.float(&format!("x{n}"), &index.write(syntax, false), false);
         body.push_str(&format!("    {line}\n"));
     }

@@ -1,6 +1,8 @@
 //! A formula as named steps: evaluated in f32 as the code computes it, counted, and written in a language.
 
-use crate::encode::code::{C, Expression, Glsl, Hlsl, Rust, Syntax, Wgsl};
+use crate::encode::code::{C, Glsl, Hlsl, Rust, Syntax, Wgsl};
+use crate::grid::expression::Expression;
+use crate::grid::scalar::Scalar;
 use crate::math::rational::{Fitted, Term, Terms};
 use std::fmt::Write;
 

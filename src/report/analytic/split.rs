@@ -16,7 +16,8 @@
 use super::formula::{Formula, name, number, ratio};
 use super::{Fit, FitError, LINES, PRACTICAL_WEIGHT, STEPS, Sample, TOLERANCE};
 use crate::cancel::Cancel;
-use crate::encode::code::Expression;
+use crate::grid::expression::Expression;
+use crate::grid::scalar::Scalar;
 use crate::math::figures::short;
 use crate::math::rational::{self, Fitted, Point, Term, Terms};
 use crate::tables::Bound;
@@ -250,10 +251,10 @@ impl Albedo {
             quotient(name("e_p"), "e_q")
         };
         let steps = [
-            ("v", name("mu").over(name("mu").plus(name("alpha")).max(1e-30))),
+            ("v", name("mu").over(name("mu").plus(name("alpha")).at_least(1e-30))),
             ("e_p", e_ratio.above),
             ("e_q", e_ratio.below),
-            ("e", e.clamp(0.0, 1.0)),
+            ("e", e.at_least(0.0).at_most(1.0)),
             ("k_p", k_ratio.above),
             ("k_q", k_ratio.below),
             ("k", quotient(name("k_p"), "k_q")),

@@ -3,7 +3,9 @@
 use super::formula::{Formula, name, ratio};
 use super::{Fit, FitError, LINES, PRACTICAL_WEIGHT, STEPS, Sample, TOLERANCE};
 use crate::cancel::Cancel;
-use crate::encode::code::{Expression, coordinates};
+use crate::encode::code::coordinates;
+use crate::grid::expression::Expression;
+use crate::grid::scalar::Scalar;
 use crate::grid::layout::Point as Place;
 use crate::grid::table::{named, place as words};
 use crate::math::rational::{self, Fitted, Point, Terms};
@@ -143,7 +145,7 @@ fn formula(bound: &Bound, terms: &Terms, fitted: &[Fitted]) -> Result<Formula, F
     let spec = &bound.spec;
     let axes = spec.grid.axes();
     let mut steps: Vec<(String, Expression)> = Vec::new();
-    for (i, x) in coordinates(axes, false)?.into_iter().enumerate() {
+    for (i, x) in coordinates(axes, false).into_iter().enumerate() {
         steps.push((format!("x{i}"), x));
     }
     let mut denominators = Vec::new();
@@ -158,8 +160,8 @@ fn formula(bound: &Bound, terms: &Terms, fitted: &[Fitted]) -> Result<Formula, F
         }
         let [lo, hi] = info.range;
         results.push(match (lo.is_finite(), hi.is_finite()) {
-            (true, true) => result.clamp(lo, hi),
-            (true, false) => result.max(lo),
+            (true, true) => result.at_least(lo).at_most(hi),
+            (true, false) => result.at_least(lo),
             (false, true) => result.min(Expression::Number(hi)),
             (false, false) => result,
         });
