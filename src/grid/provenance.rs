@@ -105,7 +105,11 @@ pub struct Subject {
     pub sources: Vec<String>,
 }
 
-/// An axis with its maps spelled out.
+/// The schema (JSON Schema 2020-12) of an [`AxisRecord`]: what each key means, and the order of domain, warp, direction, texel
+/// convention and offset.
+pub const AXIS_SCHEMA: &str = include_str!("axis.schema.json");
+
+/// An axis with its maps spelled out; its JSON is that of [`AXIS_SCHEMA`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AxisRecord {
     /// The axis itself.

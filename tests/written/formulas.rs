@@ -1,102 +1,108 @@
-//! The formula of a texture coordinate, computed as it is written, leads to the texel that holds the value.
+//! What files say of an axis, computed by an evaluator that is not ours, leads to the texel that holds the value.
 
-use brdfbake::grid::{Axis, Direction, Quantity, Texel, Warp};
+use brdfbake::grid::provenance::{AXIS_SCHEMA, AxisRecord};
+use brdfbake::grid::{Axis, Direction, Grid, Quantity, Texel, Warp};
+use brdfbake::recipe::{ENGINES, PRESETS, parse};
+use brdfbake::tables::{TABLES, spec::Request};
+use evalexpr::{ContextWithMutableFunctions, ContextWithMutableVariables, Function, Value};
+use std::collections::BTreeMap;
 
-/// A formula with its rest.
-struct Text<'a> {
-    rest: &'a str,
-    names: &'a [(&'a str, f64)],
+type Context = evalexpr::HashMapContext;
+
+/// The functions of the formulas, by their names in the mathematics of the evaluator.
+fn context() -> Context {
+    let mut context = Context::new();
+    let one = |f: fn(f64) -> f64| Function::new(move |v| Ok(Value::Float(f(v.as_number()?))));
+    let two = |f: fn(f64, f64) -> f64| {
+        Function::new(move |v| {
+            let t = v.as_fixed_len_tuple(2)?;
+            Ok(Value::Float(f(t[0].as_number()?, t[1].as_number()?)))
+        })
+    };
+    context.set_function("sqrt".into(), one(f64::sqrt)).unwrap();
+    context.set_function("cos".into(), one(f64::cos)).unwrap();
+    context.set_function("pow".into(), two(f64::powf)).unwrap();
+    context.set_function("min".into(), two(f64::min)).unwrap();
+    context.set_function("max".into(), two(f64::max)).unwrap();
+    context
 }
 
-impl Text<'_> {
-    fn take(&mut self, sign: char) -> bool {
-        let rest = self.rest.trim_start();
-        let taken = rest.strip_prefix(sign);
-        self.rest = taken.unwrap_or(rest);
-        taken.is_some()
+struct Written(evalexpr::Node, Context);
+
+impl Written {
+    fn new(formula: &str) -> Written {
+        let node = evalexpr::build_operator_tree(formula).unwrap_or_else(|e| panic!("{formula}: {e}"));
+        Written(node, context())
     }
 
-    fn sum(&mut self) -> f64 {
-        let mut value = self.product();
-        loop {
-            if self.take('+') {
-                value += self.product();
-            } else if self.take('-') {
-                value -= self.product();
-            } else {
-                return value;
-            }
+    fn at(&mut self, names: &[(&str, f64)]) -> f64 {
+        for (name, value) in names {
+            self.1.set_value((*name).to_owned(), Value::Float(*value)).unwrap();
         }
-    }
-
-    /// `a * b`, `a / b`, and `a b`.
-    fn product(&mut self) -> f64 {
-        let mut value = self.power();
-        loop {
-            let rest = self.rest.trim_start();
-            if self.take('*') {
-                value *= self.power();
-            } else if self.take('/') {
-                value /= self.power();
-            } else if rest.starts_with(|c: char| c == '(' || c.is_ascii_alphanumeric()) {
-                value *= self.power();
-            } else {
-                return value;
-            }
-        }
-    }
-
-    fn power(&mut self) -> f64 {
-        let base = self.atom();
-        if self.take('^') { libm::pow(base, self.atom()) } else { base }
-    }
-
-    fn atom(&mut self) -> f64 {
-        if self.take('-') {
-            return -self.atom();
-        }
-        if self.take('(') {
-            let value = self.sum();
-            assert!(self.take(')'), "no end of a bracket before `{}`", self.rest);
-            return value;
-        }
-        let end = self.rest.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_' || c == '.'));
-        let (word, rest) = self.rest.split_at(end.unwrap_or(self.rest.len()));
-        self.rest = rest;
-        if word == "sqrt" {
-            return self.atom().sqrt();
-        }
-        let named = self.names.iter().find(|(name, _)| *name == word).map(|(_, value)| *value);
-        named.or_else(|| word.parse().ok()).unwrap_or_else(|| panic!("`{word}` is no name and no number"))
+        self.0.eval_number_with_context(&self.1).unwrap_or_else(|e| panic!("{:?} at {names:?}: {e}", self.0))
     }
 }
 
-/// A formula, and what `, c = ...` behind it says.
-fn evaluate(formula: &str, names: &[(&str, f64)]) -> f64 {
-    let (whole, c) = formula.split_once(", c = ").unwrap_or((formula, "1"));
-    let mut all = names.to_vec();
-    all.push(("c", number(c, names)));
-    number(whole, &all)
+/// Every axis of every preset, engine and kind, with the axis that it is coupled to, by what files say of it.
+fn axes() -> BTreeMap<String, (Axis, Option<Axis>)> {
+    let mut grids: Vec<Grid> = Vec::new();
+    for preset in PRESETS {
+        grids.extend(parse(preset.source, preset.id).unwrap().tables.into_iter().map(|t| t.bound.spec.grid));
+    }
+    for engine in ENGINES {
+        grids.extend(engine.plan().unwrap().tables.into_iter().map(|t| t.bound.spec.grid));
+    }
+    for kind in TABLES {
+        let request = Request { kind: kind.id.to_owned(), ..Request::default() };
+        grids.push(request.bind().unwrap().spec.grid);
+    }
+    let mut found = BTreeMap::new();
+    for grid in &grids {
+        for axis in grid.axes() {
+            let other = axis.warp.couples_to();
+            let other = other.and_then(|to| grid.axes().iter().find(|a| a.quantity.base_id() == to));
+            found.insert(format!("{axis:?} {other:?}"), (axis.clone(), other.cloned()));
+        }
+    }
+    found
 }
 
-fn number(text: &str, names: &[(&str, f64)]) -> f64 {
-    let mut text = Text { rest: text, names };
-    let value = text.sum();
-    assert_eq!(text.rest.trim(), "", "the rest of a formula");
-    value
+/// Compares what is written of an axis with its reader at seeded points; values are those of the axis' own quantity.
+fn compare(axis: &Axis, other: Option<&Axis>, points: usize) {
+    let record = AxisRecord::new(axis);
+    let mut coordinate = Written::new(&record.coordinate);
+    let mut base = record.base.as_ref().map(|b| Written::new(b.split_once(" = ").unwrap().1));
+    let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1u64 << 53) as f64
+    };
+    for i in 0..points {
+        // the ends too
+        let mut pick = |[lo, hi]: [f64; 2]| match i {
+            0 => lo,
+            1 => hi,
+            _ => lo + (hi - lo) * random(),
+        };
+        let value = pick(axis.domain);
+        let coupled = other.map_or(0.0, |o| o.quantity.to_base(pick(o.domain)));
+        let names = [(axis.quantity.id, value), (axis.warp.couples_to().unwrap_or("unused"), coupled)];
+        let got = coordinate.at(&names);
+        let wanted = (axis.index(value, coupled) + 0.5) / axis.len as f64;
+        assert!((got - wanted).abs() < 1e-12, "{} at {names:?}: {got}, the reader {wanted}", record.coordinate);
+        if let (Some(base), Some(text)) = (&mut base, &record.base) {
+            let (got, wanted) = (base.at(&names[..1]), axis.quantity.to_base(value));
+            assert!((got - wanted).abs() <= 1e-12 * wanted.abs(), "{text} at {value}: {got}, not {wanted}");
+        }
+    }
 }
 
 #[test]
-fn formulas_are_computed_as_they_are_written() {
-    let names = [("mu", 0.25), ("alpha", 0.5)];
-    for (formula, value) in [
-        ("sqrt(mu) - -1 / 8", 0.625),
-        ("1 - ((mu - 0.05) / 2)", 0.9),
-        ("((1 - (mu)) * 3 + 0.5) / 4 - 2 / 4", 0.1875),
-        ("(mu (1 + c) / (mu + c))^(1/2), c = alpha", 0.707_106_781_186_547_5),
-        ("mu^2, c = 3 alpha^2", 0.0625),
-    ] {
-        assert!((evaluate(formula, &names) - value).abs() < 1e-15, "{formula}");
+fn axes_of_every_preset_engine_and_kind_evaluate_as_they_are_written() {
+    let axes = axes();
+    assert!(axes.len() > 60, "only {} axes", axes.len());
+    for (axis, other) in axes.values() {
+        compare(axis, other.as_ref(), 1000);
     }
 }
 
@@ -127,15 +133,16 @@ fn a_texture_coordinate_leads_to_its_texel() {
                         let mut axis = Axis::new(quantity, 9, texel).over(domain).warped(warp.clone());
                         (axis.direction, axis.offset) = (direction, offset);
                         axis.check().unwrap();
-                        let formula = axis.coordinate_formula();
+                        let mut formula = Written::new(&axis.coordinate_formula());
                         // rows that an offset pushes beyond the end hold the value of the end
                         for i in 2..7 {
                             let value = axis.value(i, alpha);
-                            let got = evaluate(&formula, &[(id, value), ("alpha", alpha)]);
+                            let got = formula.at(&[(id, value), ("alpha", alpha)]);
                             let wanted = (i as f64 + 0.5) / 9.0;
                             assert!(
                                 (got - wanted).abs() < 1e-9,
-                                "{formula} at {id} = {value}: {got}, not {wanted}"
+                                "{} at {id} = {value}: {got}, not {wanted}",
+                                axis.coordinate_formula()
                             );
                             compared += 1;
                         }
@@ -145,4 +152,53 @@ fn a_texture_coordinate_leads_to_its_texel() {
         }
     }
     assert_eq!(compared, 4 * 9 * 2 * 2 * 5 * 5);
+}
+
+#[test]
+fn slopes_are_those_of_the_index() {
+    let mut compared = 0;
+    for (axis, other) in axes().values() {
+        let [lo, hi] = axis.domain;
+        for t in [0.11, 0.37, 0.73] {
+            let value = lo + (hi - lo) * t;
+            let coupled = other.as_ref().map_or(0.0, |o| o.quantity.to_base(0.5 * (o.domain[0] + o.domain[1])));
+            let h = 1e-6 * (hi - lo);
+            let [before, after] = [value - h, value + h].map(|v| axis.index(v, coupled));
+            let wanted = (after - before) / (2.0 * h);
+            let got = axis.slope(value, coupled);
+            assert!((got - wanted).abs() <= 1e-5 * wanted.abs(), "{axis:?} at {value}: {got}, not {wanted}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 180, "{compared}");
+}
+
+#[test]
+fn every_quantity_has_a_map_that_leads_back() {
+    for q in brdfbake::grid::quantity::QUANTITIES.iter().filter(|q| q.base.is_some()) {
+        let text = q.base_formula().unwrap();
+        let mut written = Written::new(text.split_once(" = ").unwrap().1);
+        for t in [0.01, 0.3, 0.5, 0.77, 0.99] {
+            let value = q.domain[0] + (q.domain[1] - q.domain[0]) * t;
+            let base = written.at(&[(q.id, value)]);
+            assert!((q.from_base(base) - value).abs() < 1e-12, "{text} at {value}: back to {}", q.from_base(base));
+        }
+    }
+}
+
+#[test]
+fn axes_are_written_as_their_schema_says() {
+    let mut schemas = boon::Schemas::new();
+    let mut compiler = boon::Compiler::new();
+    compiler.add_resource("axis.json", serde_json::from_str(AXIS_SCHEMA).unwrap()).unwrap();
+    let schema = compiler.compile("axis.json", &mut schemas).unwrap();
+    for (axis, _) in axes().values() {
+        let json = serde_json::to_value(AxisRecord::new(axis)).unwrap();
+        schemas.validate(&json, schema).unwrap_or_else(|e| panic!("{json}: {e}"));
+        for key in json.as_object().unwrap().keys().filter(|k| *k != "base") {
+            let mut less = json.clone();
+            less.as_object_mut().unwrap().remove(key);
+            assert!(schemas.validate(&less, schema).is_err(), "{key} may be missing");
+        }
+    }
 }
