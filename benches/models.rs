@@ -27,7 +27,7 @@ fn rule(model: &dyn Brdf) -> &'static str {
         "delta: closed form"
     } else if model.parts().is_some() {
         "charts of its lobes"
-    } else if model.reduced_albedo(0.5, TOLERANCE).is_some() {
+    } else if model.reduced(0.5, &[Functional::One], TOLERANCE).is_some() {
         "reduction"
     } else {
         model.chart().map_or("adaptive subdivision", |c| c.name())

@@ -19,7 +19,7 @@ fn transmitted(model: &dyn Brdf, mu: f64, tolerance: f64) -> (f64, f64) {
 }
 
 fn reflected(model: &dyn Brdf, mu: f64, tolerance: f64) -> (f64, f64) {
-    let e = models::albedo_curve::directional_albedo(model, mu, tolerance);
+    let e = models::integral::directional_albedo(model, mu, tolerance);
     (e.value[0], e.error[0])
 }
 

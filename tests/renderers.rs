@@ -6,7 +6,7 @@
 #[path = "common.rs"]
 mod common;
 
-use brdfbake::models::albedo_curve::directional_albedo;
+use brdfbake::models::integral::directional_albedo;
 use brdfbake::models::{self, Brdf, Params};
 use glam::DVec3;
 use serde_json::{Value as Json, json};

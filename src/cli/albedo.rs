@@ -5,7 +5,7 @@ use crate::cancel::Cancel;
 use crate::integrate::View;
 use crate::math::figures::exact;
 use crate::models::{self, Params};
-use crate::tables::integral::{Functional, integrate};
+use crate::tables::integral::{Functional, integrate, integrate_in_chart};
 use serde_json::{Map, Value as Json};
 
 /// Arguments of `albedo`.
@@ -63,13 +63,12 @@ pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
                 exact(mu)
             )));
         }
-        // twice the same functional asks for the chart: reductions exist for a single one only
-        let functionals: &[Functional] =
-            if args.chart { &[Functional::One, Functional::One] } else { &[Functional::One] };
-        let e = integrate(&*model, View { mu, phi: args.phi }, functionals, args.tolerance).map_err(|e| {
-            let why = e.of(["E"].into_iter());
-            Failure::new(Exit::of_texel(&e), format!("{}: mu = {}: {why}", info.id, exact(mu)))
-        })?;
+        let rule = if args.chart { integrate_in_chart } else { integrate };
+        let e =
+            rule(&*model, View { mu, phi: args.phi }, &[Functional::One], args.tolerance).map_err(|e| {
+                let why = e.of(["E"].into_iter());
+                Failure::new(Exit::of_texel(&e), format!("{}: mu = {}: {why}", info.id, exact(mu)))
+            })?;
         let through = model.transmission().and_then(|t| t.albedo(mu, args.tolerance));
         let through = through.map(|t| (t.value[0], t.error[0]));
         missed |= e.error[0] > args.tolerance || through.is_some_and(|t| t.1 > args.tolerance);

@@ -125,13 +125,7 @@ pub static QUANTITIES: &[Quantity] = &[
     base("theta_h", "theta_h", "rad", "angle of the half vector to the normal", [0.0, FRAC_PI_2]),
     base("theta_d", "theta_d", "rad", "angle of the half vector to both directions", [0.0, FRAC_PI_2]),
     base("phi_d", "phi_d", "rad", "azimuth of the directions round the half vector", [0.0, PI]),
-    derived(
-        "roughness",
-        "r",
-        "artist's roughness",
-        [0.0, 1.0],
-        Base { id: "alpha", map: BaseMap::Square },
-    ),
+    derived("roughness", "r", "artist's roughness", [0.0, 1.0], Base { id: "alpha", map: BaseMap::Square }),
     derived(
         "sheen_roughness",
         "r",

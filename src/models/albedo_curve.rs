@@ -4,7 +4,8 @@
 //! the roughness: each panel sees every singularity at a distance of its own length, so a fixed degree serves all.
 
 use super::Brdf;
-use crate::integrate::{BATCH, Estimate, Nodes, Sums, adaptive, gauss, ladder};
+use super::integral::directional_albedo;
+use crate::integrate::gauss;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex};
@@ -30,37 +31,6 @@ pub struct AlbedoCurve {
     average: f64,
     /// Estimated errors of the panels: of the nodes, and of what the polynomials leave out.
     errors: [f64; PANELS],
-}
-
-/// The directional albedo at a view cosine: of parts, of a mirror, by a reduction, in a chart, or by subdivision.
-#[must_use]
-pub fn directional_albedo(model: &dyn Brdf, mu_o: f64, tolerance: f64) -> Estimate {
-    if let Some(parts) = model.parts() {
-        let mut total = Estimate::ZERO;
-        for (weight, part) in parts.into_iter().filter(|(weight, _)| *weight > 0.0) {
-            total.add(weight, &directional_albedo(part, mu_o, tolerance / weight));
-        }
-        return total;
-    }
-    if let Some(e) = model.mirror(mu_o) {
-        return Estimate::exact_one(e);
-    }
-    if let Some(e) = model.reduced_albedo(mu_o, tolerance) {
-        return e;
-    }
-    let mut values = [0.0; BATCH];
-    let mut add = |nodes: &Nodes, sums: &mut Sums| {
-        model.eval_nodes(nodes, &mut values);
-        for (i, f) in values.iter().enumerate().take(nodes.len) {
-            sums[0] += f * (nodes.weight[i] * nodes.mu_i[i]);
-        }
-    };
-    let mut e = match model.chart() {
-        Some(chart) => ladder::integrate(&chart, mu_o.into(), 1, tolerance, &mut add),
-        None => adaptive::integrate(mu_o.into(), 1, tolerance, &mut add),
-    };
-    e.error[0] += model.own_error(mu_o);
-    e
 }
 
 /// Ends of a panel.

@@ -3,7 +3,8 @@
 //! The white albedo of the lobe is a curve made when the model is built; 1 - E of the curve and its average are consistent, so
 //! a white surface reflects everything to the accuracy of the curve.
 
-use super::albedo_curve::{AlbedoCurve, directional_albedo};
+use super::albedo_curve::AlbedoCurve;
+use super::integral::directional_albedo;
 use super::lobes::{Diffuse, Part, Reflector, Sum};
 use super::microfacet::MASKING;
 use super::{Brdf, Functional, Param, ParamError, Params, Preset, Sample, microfacet};

@@ -40,6 +40,7 @@ pub mod glass;
 pub mod gltf;
 mod grooves;
 pub mod gtr;
+pub mod integral;
 pub mod kelemen;
 pub mod kelemen_matte;
 pub mod kelemen_skin;
@@ -74,6 +75,7 @@ use crate::cite::Cite;
 use crate::integrate::{BATCH, Chart, Estimate, Nodes};
 pub use functional::Functional;
 use glam::{DVec2, DVec3};
+pub use integral::Route;
 pub use param::{Column, Kind, Param, ParamError, Params, Preset, Sweep, Value};
 use std::fmt::Debug;
 
@@ -191,11 +193,6 @@ pub trait Brdf: Debug + Send + Sync {
     /// What an albedo at a view cosine may be off by because the model itself holds curves that were integrated, absolute.
     fn own_error(&self, _mu_o: f64) -> f64 {
         0.0
-    }
-
-    /// Directional albedo by such a rule.
-    fn reduced_albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
-        self.reduced(mu_o, &[Functional::One], tolerance)
     }
 }
 

@@ -1,70 +1,11 @@
-//! Linear functionals of a reflectance model: every channel of a table that is an integral over incident directions.
-//!
-//! `I_j = int f(wo, wi) g_j(wo . wh) mu_i dwi`, all channels over the same nodes in one pass.
+//! Channels of a table that are integrals over incident directions; see [`crate::models::integral`].
 
 use super::{TexelError, finite};
-use crate::integrate::{BATCH, Estimate, MAX_CHANNELS, Nodes, Sums, View, adaptive, ladder};
-use crate::models::Brdf;
+use crate::integrate::{Estimate, View};
 pub use crate::models::Functional;
+use crate::models::{Brdf, Route, integral};
 
-/// The channel from the two sums that the usual functionals are made of.
-fn from_sums(g: Functional, sums: Batch) -> Option<f64> {
-    match g {
-        Functional::One => Some(sums.one),
-        Functional::Schlick => Some(sums.schlick),
-        Functional::SchlickComplement => Some(sums.one - sums.schlick),
-        _ => None,
-    }
-}
-
-/// The channel of a batch by its weight at every node.
-fn weighed(g: Functional, values: &[f64; BATCH], nodes: &Nodes) -> f64 {
-    let term = |i: usize| values[i] * (nodes.weight[i] * nodes.mu_i[i]) * g.at(nodes.cos_d[i]);
-    (0..nodes.len).map(term).sum()
-}
-
-/// Sums of a batch: of the contributions, and of the contributions times (1 - v)^5.
-#[derive(Debug, Clone, Copy)]
-struct Batch {
-    one: f64,
-    schlick: f64,
-}
-
-/// Independent partial sums, so that additions need not wait for each other. The order is fixed.
-const LANES: usize = 4;
-
-impl Batch {
-    /// `values` are f; the contributions are f times weight times `mu_i`.
-    fn new(values: &[f64; BATCH], nodes: &Nodes) -> Batch {
-        let n = nodes.len;
-        let (mut one, mut schlick) = ([0.0; LANES], [0.0; LANES]);
-        let whole = n - n % LANES;
-        let mut add = |lane: usize, i: usize| {
-            let f = values[i] * (nodes.weight[i] * nodes.mu_i[i]);
-            let m = 1.0 - nodes.cos_d[i];
-            let m2 = m * m;
-            one[lane] += f;
-            schlick[lane] += f * (m2 * m2 * m);
-        };
-        for i in (0..whole).step_by(LANES) {
-            for lane in 0..LANES {
-                add(lane, i + lane);
-            }
-        }
-        for i in whole..n {
-            add(i - whole, i);
-        }
-        Batch {
-            one: (one[0] + one[1]) + (one[2] + one[3]),
-            schlick: (schlick[0] + schlick[1]) + (schlick[2] + schlick[3]),
-        }
-    }
-}
-
-/// Integrates the functionals of a model at a view to an absolute tolerance.
-///
-/// A number is a view cosine in the plane of the tangent. A sum of lobes is integrated lobe by lobe, a lobe in its
-/// chart, and one without a chart by adaptive subdivision.
+/// Integrates the functionals of a model at a view to an absolute tolerance by the best rule that the model knows.
 ///
 /// # Errors
 /// [`TexelError::NotFinite`] with the channel.
@@ -74,52 +15,18 @@ pub fn integrate(
     functionals: &[Functional],
     tolerance: f64,
 ) -> Result<Estimate, TexelError> {
-    debug_assert!(functionals.len() <= MAX_CHANNELS);
-    let view = view.into();
-    if let Some(parts) = model.parts() {
-        return sum(&parts, view, functionals, tolerance);
-    }
-    if let Some(e) = model.mirror(view.mu) {
-        let mut value = [0.0; MAX_CHANNELS];
-        for (v, g) in value.iter_mut().zip(functionals) {
-            *v = e * g.at(view.mu);
-        }
-        return Ok(Estimate::exact(value));
-    }
-    if let Some(e) = model.reduced(view.mu, functionals, tolerance) {
-        return finite(e, functionals.len());
-    }
-    let mut values = [0.0; BATCH];
-    let mut add = |nodes: &Nodes, sums: &mut Sums| {
-        model.eval_nodes(nodes, &mut values);
-        let batch = Batch::new(&values, nodes);
-        for (s, g) in sums.iter_mut().zip(functionals) {
-            *s += from_sums(*g, batch).unwrap_or_else(|| weighed(*g, &values, nodes));
-        }
-    };
-    let channels = functionals.len();
-    let crease = functionals.iter().find_map(|g| g.crease());
-    let estimate = match model.chart().map(|chart| chart.creased(crease)) {
-        Some(chart) => ladder::integrate(&chart, view, channels, tolerance, &mut add),
-        None => adaptive::integrate(view, channels, tolerance, &mut add),
-    };
-    let own = model.own_error(view.mu);
-    let mut estimate = estimate;
-    estimate.error[..channels].iter_mut().for_each(|e| *e += own);
-    finite(estimate, channels)
+    finite(integral::integrate(model, view, functionals, tolerance, Route::Best), functionals.len())
 }
 
-/// The sum of the parts, each to its share of the tolerance; values and errors add.
-fn sum(
-    parts: &[(f64, &dyn Brdf)],
-    view: View,
+/// The same in the chart of the model, whatever else it knows.
+///
+/// # Errors
+/// [`TexelError::NotFinite`] with the channel.
+pub fn integrate_in_chart(
+    model: &dyn Brdf,
+    view: impl Into<View>,
     functionals: &[Functional],
     tolerance: f64,
 ) -> Result<Estimate, TexelError> {
-    let mut total = Estimate::ZERO;
-    let share = tolerance / parts.len().max(1) as f64;
-    for &(weight, part) in parts.iter().filter(|(weight, _)| *weight > 0.0) {
-        total.add(weight, &integrate(part, view, functionals, share / weight)?);
-    }
-    finite(total, functionals.len())
+    finite(integral::integrate(model, view, functionals, tolerance, Route::Chart), functionals.len())
 }

@@ -1,6 +1,7 @@
 //! Scale plus bias is the white albedo, as another rule gives it.
 
 use super::{Case, Law, Outcome, Watch, energy, honest, lobes::Lobes, seeds};
+use crate::models::Functional;
 use crate::tables::place;
 use crate::tables::role::{Lobe, Side};
 
@@ -31,7 +32,9 @@ fn check(case: &Case<'_>) -> Outcome {
                 .mirror(view.mu)
                 .map(|e| (e, 1e-15))
                 .or_else(|| {
-                    model.reduced_albedo(view.mu, 0.1 * case.tolerance).map(|e| (e.value[0], e.error[0]))
+                    model
+                        .reduced(view.mu, &[Functional::One], 0.1 * case.tolerance)
+                        .map(|e| (e.value[0], e.error[0]))
                 })
                 .or_else(|| honest::albedo(&*model, view, 0.1 * case.tolerance).map(|t| (t.value, t.error)));
             let Some((r, r_error)) = reference.filter(|r| r.1 <= case.tolerance) else {

@@ -89,7 +89,11 @@ fn compare(axis: &Axis, other: Option<&Axis>, points: usize) {
         let names = [(axis.quantity.id, value), (axis.warp.couples_to().unwrap_or("unused"), coupled)];
         let got = coordinate.at(&names);
         let wanted = (axis.index(value, coupled) + 0.5) / axis.len as f64;
-        assert!((got - wanted).abs() < 1e-12, "{} at {names:?}: {got}, the reader {wanted}", record.coordinate);
+        assert!(
+            (got - wanted).abs() < 1e-12,
+            "{} at {names:?}: {got}, the reader {wanted}",
+            record.coordinate
+        );
         if let (Some(base), Some(text)) = (&mut base, &record.base) {
             let (got, wanted) = (base.at(&names[..1]), axis.quantity.to_base(value));
             assert!((got - wanted).abs() <= 1e-12 * wanted.abs(), "{text} at {value}: {got}, not {wanted}");
@@ -161,7 +165,8 @@ fn slopes_are_those_of_the_index() {
         let [lo, hi] = axis.domain;
         for t in [0.11, 0.37, 0.73] {
             let value = lo + (hi - lo) * t;
-            let coupled = other.as_ref().map_or(0.0, |o| o.quantity.to_base(0.5 * (o.domain[0] + o.domain[1])));
+            let coupled =
+                other.as_ref().map_or(0.0, |o| o.quantity.to_base(0.5 * (o.domain[0] + o.domain[1])));
             let h = 1e-6 * (hi - lo);
             let [before, after] = [value - h, value + h].map(|v| axis.index(v, coupled));
             let wanted = (after - before) / (2.0 * h);
@@ -181,7 +186,11 @@ fn every_quantity_has_a_map_that_leads_back() {
         for t in [0.01, 0.3, 0.5, 0.77, 0.99] {
             let value = q.domain[0] + (q.domain[1] - q.domain[0]) * t;
             let base = written.at(&[(q.id, value)]);
-            assert!((q.from_base(base) - value).abs() < 1e-12, "{text} at {value}: back to {}", q.from_base(base));
+            assert!(
+                (q.from_base(base) - value).abs() < 1e-12,
+                "{text} at {value}: back to {}",
+                q.from_base(base)
+            );
         }
     }
 }

@@ -7,8 +7,8 @@
 use super::{MOST_DIGITS, Parts, Syntax, number};
 use crate::cancel::Cancel;
 use crate::encode::{EncodeInput, Storage};
-use crate::grid::axis::count;
 use crate::grid::Axis;
+use crate::grid::axis::count;
 use crate::grid::expression::Expression;
 use crate::grid::scalar::Scalar;
 use std::fmt::Write;

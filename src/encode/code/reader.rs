@@ -5,9 +5,9 @@ use super::program::{indices, name_of};
 use super::{Glsl, Hlsl, Syntax, Wgsl};
 use crate::encode::EncodeError;
 use crate::grid::Grid;
+use crate::grid::axis::count;
 use crate::grid::expression::Expression;
 use crate::grid::scalar::Scalar;
-use crate::grid::axis::count;
 
 /// Languages that read textures.
 static LANGUAGES: &[&dyn Syntax] = &[&Glsl, &Hlsl, &Wgsl];
