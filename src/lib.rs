@@ -39,3 +39,7 @@ pub mod scene;
 pub mod tables;
 pub mod terms;
 pub mod verify;
+
+#[cfg(test)]
+#[path = "../tests/counted.rs"]
+mod counted;

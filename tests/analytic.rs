@@ -9,14 +9,8 @@
     reason = "test"
 )]
 
-#[path = "analytic/code.rs"]
 mod code;
-#[path = "analytic/command.rs"]
 mod command;
-mod common;
-#[path = "analytic/solver.rs"]
 mod solver;
-#[path = "analytic/split.rs"]
 mod split;
-#[path = "analytic/tables.rs"]
 mod tables;

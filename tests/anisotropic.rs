@@ -1,8 +1,7 @@
 //! Tables of anisotropic and of diffuse models, through the baker and its laws.
 #![allow(clippy::unwrap_used, reason = "a test may fail by panicking")]
 
-mod common;
-
+use crate::common::{axis, bake};
 use brdfbake::grid::{Axis, Table, Texel};
 use brdfbake::integrate::View;
 use brdfbake::models::{MODELS, Params};
@@ -10,7 +9,6 @@ use brdfbake::tables::average_albedo::average;
 use brdfbake::tables::integral::{Functional, integrate};
 use brdfbake::tables::spec::{BindError, Bound, Request};
 use brdfbake::verify;
-use common::{axis, bake};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn request(kind: &str, model: &str, params: &str, axes: Vec<Axis>) -> Result<Bound, BindError> {

@@ -6,8 +6,7 @@
     reason = "tests: the differences are exact"
 )]
 
-mod sample;
-
+use crate::sample;
 use brdfbake::cancel::Cancel;
 use brdfbake::encode::atomic::{TEMPORARY, WriteError, sweep, write_all};
 use brdfbake::encode::diff::{self, Tolerance};

@@ -2,15 +2,9 @@
 #![allow(clippy::excessive_precision, reason = "reference values are quoted with all their digits")]
 #![allow(clippy::unwrap_used, reason = "a test may fail by panicking")]
 
-#[path = "empirical/closed_forms.rs"]
 mod closed_forms;
-#[path = "empirical/largest.rs"]
 mod largest;
-#[path = "empirical/limits.rs"]
 mod limits;
-#[path = "empirical/stiff.rs"]
 mod stiff;
-#[path = "empirical/support.rs"]
 mod support;
-#[path = "empirical/values.rs"]
 mod values;

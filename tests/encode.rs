@@ -6,14 +6,12 @@
     reason = "tests: stored values are exact"
 )]
 
-mod sample;
-
+use crate::sample::{channel, file, hard, provenance, table};
 use brdfbake::encode::read::{Claim, Sample, read_bytes};
 use brdfbake::encode::storage::{QuantiseError, STORAGES, Storage};
 use brdfbake::encode::{ENCODERS, EncodeError, EncodeInput, encoder, quantise_table};
 use brdfbake::grid::{Axis, Channel, Grid, Table, Texel};
 use proptest::prelude::*;
-use sample::{channel, file, hard, provenance, table};
 
 const UNIT: [f64; 2] = [0.0, 1.0];
 

@@ -7,20 +7,11 @@
     reason = "test"
 )]
 
-#[path = "engines/arrays.rs"]
 mod arrays;
-mod common;
-#[path = "engines/compare.rs"]
 mod compare;
-#[path = "engines/files.rs"]
 mod files;
-#[path = "engines/interfaces.rs"]
 mod interfaces;
-#[path = "engines/places.rs"]
 mod places;
-#[path = "engines/registry.rs"]
 mod registry;
-#[path = "engines/suggest.rs"]
 mod suggest;
-#[path = "engines/support.rs"]
 mod support;

@@ -1,13 +1,11 @@
 //! Files for other programs to read: see `tests/foreign/read_back.py`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stderr, reason = "tests")]
 
-mod sample;
-#[path = "foreign/shapes.rs"]
 mod shapes;
 
+use crate::sample::{file, grid, hard, provenance, table};
 use brdfbake::encode::read::read_file;
 use brdfbake::encode::{ENCODERS, Storage, encoder, quantise_table};
-use sample::{file, grid, hard, provenance, table};
 
 /// Writes one file of each kind, with what it must hold, for `tests/foreign/read_back.py`.
 #[test]

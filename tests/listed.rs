@@ -2,7 +2,7 @@
 //! and model alone; every preset; every engine. What cannot is refused when it is read, with the reason.
 //!
 //! The short form, on axes of a few texels, runs with the others. The whole one takes an hour:
-//! `cargo test --release --test listed -- --ignored --nocapture`.
+//! `cargo test --release --test house listed -- --ignored --nocapture`.
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "test")]
 
 use brdfbake::encode::{self, Storage};

@@ -2,7 +2,7 @@
 //! quadratures that share no node with the fit.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::cast_possible_truncation, reason = "test")]
 
-mod common;
+use crate::common::{axis, bake, npy, request, shared};
 use brdfbake::grid::provenance::Waiver;
 use brdfbake::grid::{Axis, Direction, Table, Texel, Warp};
 use brdfbake::integrate::View;
@@ -13,7 +13,6 @@ use brdfbake::tables::{BindError, Role, TexelError, ltc_matrix};
 use brdfbake::terms::ltc::{Inverse, Ltc};
 use brdfbake::terms::sphere_light;
 use brdfbake::verify;
-use common::{axis, bake, npy, request, shared};
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "test")]
 #![allow(clippy::print_stderr, reason = "what was skipped is said")]
 
+mod counted;
 mod sample;
 
 use brdfbake::cancel::Cancel;

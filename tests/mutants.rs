@@ -1,6 +1,6 @@
 //! Mutants: small wrong changes that the tests must notice. `mutants/list.toml` keeps them; each names the test that is to fail.
 //!
-//! `cargo test --test mutants` checks that the list fits the tree. The mutants themselves are made and run, one at a time in a
+//! `cargo test --test house mutants` checks that the list fits the tree. The mutants themselves are made and run, one at a time in a
 //! copy of the tree, by
 //!
 //! ```sh
@@ -8,13 +8,14 @@
 //! BRDFBAKE_MUTANTS=grid cargo mutate      # those with `grid` in their id
 //! ```
 //!
-//! which is `BRDFBAKE_MUTANTS=all cargo test --test mutants -- --ignored --nocapture`. Without the variable (`cargo long`) they are
+//! which is `BRDFBAKE_MUTANTS=all cargo test --test house -- --ignored --nocapture mutants_are`. Without the variable (`cargo long`) they are
 //! skipped.
 //!
 //! A mutant is caught when its test binary still builds and the test fails. One that survives is an error, unless the list
 //! gives the reason; so is one that is said to survive and does not.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test")]
 
+use crate::layout::binaries;
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -91,6 +92,7 @@ fn the_list_fits_the_tree() {
     let all = list();
     let mut faults = Vec::new();
     let mut ids = BTreeSet::new();
+    let binaries = binaries();
     for mutant in &all {
         if !ids.insert(mutant.id.as_str()) {
             faults.push(format!("{}: there are two of this id", mutant.id));
@@ -99,9 +101,13 @@ fn the_list_fits_the_tree() {
             Ok(text) => faults.extend(mutated(mutant, &text).err()),
             Err(e) => faults.push(format!("{}: {}: {e}", mutant.id, mutant.file)),
         }
-        let binary = root().join(format!("tests/{}.rs", mutant.test));
-        if mutant.test != "lib" && !binary.exists() {
-            faults.push(format!("{}: there is no test binary {}", mutant.id, mutant.test));
+        if mutant.test != "lib" && !binaries.contains(&mutant.test) {
+            faults.push(format!(
+                "{}: there is no test binary {}, but {}",
+                mutant.id,
+                mutant.test,
+                binaries.join(", ")
+            ));
         }
         if mutant.survives.as_ref().is_some_and(|why| why.trim().is_empty()) {
             faults.push(format!("{}: a survivor needs its reason", mutant.id));

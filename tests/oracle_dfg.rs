@@ -2,9 +2,8 @@
 //! and below the estimate reported.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "test")]
 
-mod common;
+use crate::common::{axis, bake, npy, request, shared};
 use brdfbake::grid::{Axis, Texel};
-use common::{axis, bake, npy, request, shared};
 
 const TOLERANCES: [f64; 4] = [1e-2, 2.4e-4, 1e-6, 1e-9];
 

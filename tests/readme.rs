@@ -80,7 +80,7 @@ fn generated_parts_are_up_to_date() {
             assert_eq!(
                 &readme[start..end],
                 expected,
-                "section {name} of README.md: run `cargo bless --test readme`"
+                "section {name} of README.md: run `cargo bless --test house readme`"
             );
         }
     }

@@ -3,9 +3,7 @@
 //! The whole set is read from the folder that `BRDFBAKE_SHARED` names; `values/renderers.csv` has an excerpt that always runs.
 #![allow(clippy::unwrap_used, reason = "test")]
 
-#[path = "common.rs"]
-mod common;
-
+use crate::common::shared;
 use brdfbake::models::integral::directional_albedo;
 use brdfbake::models::{self, Brdf, Params};
 use glam::DVec3;
@@ -95,7 +93,7 @@ fn pointwise(shared: &Path, check: &mut dyn FnMut(&str, &str, &csv::StringRecord
 
 #[test]
 fn mitsuba_agrees_point_by_point() {
-    let Some(shared) = common::shared() else { return };
+    let Some(shared) = shared() else { return };
     let metals: BTreeMap<&str, [[f64; 2]; 3]> = [
         ("Au", [[0.143_119, 3.983_16], [0.374_957, 2.385_721], [1.442_479, 1.603_215]]),
         ("Cu", [[0.200_438, 3.912_949], [0.924_033, 2.452_848], [1.102_212, 2.142_188]]),
@@ -161,7 +159,7 @@ type Furnace = (&'static str, &'static dyn Fn(f64) -> (&'static str, Json), f64)
 
 #[test]
 fn cycles_agrees_in_white_furnaces() {
-    let Some(shared) = common::shared() else { return };
+    let Some(shared) = shared() else { return };
     let cases: [Furnace; 7] = [
         ("glossy_ggx", &|r| ("ggx", json!({ "alpha": r * r })), 3e-4),
         ("glossy_beckmann", &|r| ("beckmann", json!({ "alpha": r * r })), 5e-4),

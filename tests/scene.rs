@@ -6,9 +6,7 @@
 )]
 #![allow(clippy::float_cmp, reason = "factors are copied from the file, not computed: they must be equal")]
 
-#[path = "scene/bad.rs"]
 mod bad;
-#[path = "scene/uri.rs"]
 mod uri;
 
 use std::path::{Path, PathBuf};

@@ -1,6 +1,6 @@
 //! Terms at the stiff ends of their ranges, in both precisions, against 60-digit values at exactly the same inputs.
 //!
-//! `cargo test --test single -- --nocapture` prints the largest relative error of each term.
+//! `cargo test --test numbers single -- --nocapture` prints the largest relative error of each term.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test")]
 

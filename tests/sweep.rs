@@ -10,39 +10,22 @@
     reason = "test"
 )]
 
-#[path = "sweep/baseline.rs"]
 mod baseline;
-#[path = "sweep/check.rs"]
 mod check;
-#[path = "sweep/closed.rs"]
 mod closed;
-#[path = "sweep/curve.rs"]
 mod curve;
-#[path = "sweep/draw.rs"]
 mod draw;
-#[path = "sweep/facets.rs"]
 mod facets;
-#[path = "sweep/fits.rs"]
 mod fits;
-#[path = "sweep/glass.rs"]
 mod glass;
-#[path = "sweep/kinds.rs"]
 mod kinds;
-#[path = "sweep/known.rs"]
 mod known;
-#[path = "sweep/lines.rs"]
 mod lines;
-#[path = "sweep/lobe.rs"]
 mod lobe;
-#[path = "sweep/lobes.rs"]
 mod lobes;
-#[path = "sweep/quad.rs"]
 mod quad;
-#[path = "sweep/rows.rs"]
 mod rows;
-#[path = "sweep/texel.rs"]
 mod texel;
-#[path = "sweep/truth.rs"]
 mod truth;
 
 use brdfbake::models::MODELS;

@@ -1,14 +1,13 @@
 //! Tables against values that this program did not make, and the promises about axes, estimates and laws.
 #![allow(clippy::unwrap_used, clippy::float_cmp, reason = "test")]
 
-mod common;
+use crate::common::{axis, bake, request};
 use brdfbake::grid::{Axis, Direction, Grid, Quantity, Texel, Warp, lookup};
 use brdfbake::models::{self, Params};
 use brdfbake::tables::average_albedo::average;
 use brdfbake::verify::baseline::{hammersley_f32, hammersley_f64};
 use brdfbake::verify::reconstruction::Probe;
 use brdfbake::verify::{self, Verified};
-use common::{axis, bake, request};
 use proptest::prelude::*;
 
 /// Rows of `values/dfg.csv`: mu, roughness, scale, bias.

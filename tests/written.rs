@@ -2,10 +2,7 @@
 //! file is replaced and never written over.
 #![allow(clippy::unwrap_used, reason = "test")]
 
-#[path = "written/formulas.rs"]
 mod formulas;
-#[path = "written/readers.rs"]
 mod readers;
 #[cfg(unix)]
-#[path = "written/replaced.rs"]
 mod replaced;

@@ -1,6 +1,9 @@
 //! Parameters of models: declared once, used by recipe checks, `describe`, test grids, file metadata and docs.
 
+mod error;
+
 use crate::math::figures::exact;
+pub use error::ParamError;
 use serde_json::Value as Json;
 
 /// One parameter of a model.
@@ -87,84 +90,6 @@ pub enum Value {
     Choice(&'static str),
     /// Rows of numbers.
     Rows(Vec<Vec<f64>>),
-}
-
-/// What can be wrong with the parameters of a model.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ParamError {
-    /// No such parameter.
-    #[error("{model}: no parameter `{key}`; it has {allowed}{}", hint(.suggestion.as_deref()))]
-    Unknown {
-        /// Model id.
-        model: &'static str,
-        /// The key given.
-        key: String,
-        /// The keys there are.
-        allowed: String,
-        /// The nearest one.
-        suggestion: Option<String>,
-    },
-    /// A number outside its range.
-    #[error("{model}: {key} = {} outside [{}, {}]", exact(.got), exact(.min), exact(.max))]
-    Range {
-        /// Model id.
-        model: &'static str,
-        /// The key.
-        key: &'static str,
-        /// The value given.
-        got: f64,
-        /// Least value.
-        min: f64,
-        /// Largest value.
-        max: f64,
-    },
-    /// A value of the wrong type, or a word that is not offered.
-    #[error("{model}: {key} = {got} is not {allowed}")]
-    Kind {
-        /// Model id.
-        model: &'static str,
-        /// The key.
-        key: &'static str,
-        /// The value given.
-        got: String,
-        /// What is allowed.
-        allowed: String,
-    },
-    /// One parameter under two of its names.
-    #[error("{model}: `{key}` and `{other}` are the same parameter; leave one out")]
-    Twice {
-        /// Model id.
-        model: &'static str,
-        /// The name that was given first.
-        key: String,
-        /// The other one.
-        other: String,
-    },
-    /// Parameters that are each in range but not together.
-    #[error("{model}: {why}")]
-    Together {
-        /// Model id.
-        model: &'static str,
-        /// Why not.
-        why: String,
-    },
-}
-
-impl ParamError {
-    /// The key at fault, if it is one.
-    #[must_use]
-    pub fn key(&self) -> Option<&str> {
-        match self {
-            ParamError::Unknown { key, .. } | ParamError::Twice { other: key, .. } => Some(key),
-            ParamError::Range { key, .. } | ParamError::Kind { key, .. } => Some(key),
-            ParamError::Together { .. } => None,
-        }
-    }
-}
-
-fn hint(suggestion: Option<&str>) -> String {
-    suggestion.map_or_else(String::new, |s| format!("; did you mean `{s}`?"))
 }
 
 /// Resolved parameters: every declared one has a value in its range.

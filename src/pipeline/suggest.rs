@@ -14,11 +14,9 @@ use crate::grid::{Axis, Direction, Grid, Texel, Warp};
 use crate::models::Params;
 use crate::recipe::{self, Engine, Output, Plan, PlannedTable, Reader, Sizing, TableRequest};
 use crate::tables::ModelUse;
+use crate::tables::default_axes::LEAST_ROUGHNESS;
 use crate::tables::spec::Request;
 use serde::Serialize;
-
-/// Least roughness of a suggested table: below, a mirror begins, which no texel can follow. Shaders clamp there or above.
-const LEAST_ROUGHNESS: f64 = 0.01;
 
 /// Part of the error that integration may have.
 const SHARE: f64 = 0.02;

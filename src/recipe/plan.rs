@@ -318,7 +318,7 @@ fn table(entry: Entry, tolerance: Option<f64>, faults: &mut Faults) -> Option<Pl
         size
     });
     let before = faults.len();
-    probe::look(&path, listed, &planned, faults);
+    probe::look(&path, [listed, entry.axes.is_none()], &planned, faults);
     if faults.len() > before {
         return None;
     }

@@ -21,9 +21,10 @@ const LAWS: [usize; 4] = [9, 9, 4, 3];
 /// The least tolerance of a look.
 const COARSE: f64 = 1e-3;
 
-/// Looks at a table that is resolved; a fault is that of the model, or of an output, if they are `listed`.
-pub(super) fn look(path: &str, listed: bool, planned: &PlannedTable, faults: &mut Faults) {
-    if let Some(fault) = unclaimed(planned) {
+/// Looks at a table that is resolved; a fault is that of the model, or of an output, if they are `listed`. Laws are looked at where
+/// the axes are the kind's own: on axes that somebody chose, a law that breaks is a finding with all of its texels.
+pub(super) fn look(path: &str, [listed, own_axes]: [bool; 2], planned: &PlannedTable, faults: &mut Faults) {
+    if let Some(fault) = own_axes.then(|| unclaimed(planned)).flatten() {
         faults.value(format!("{path}.model"), fault);
         return;
     }

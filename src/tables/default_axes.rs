@@ -126,8 +126,9 @@ pub(super) fn coupled(power: f64, scale: f64, exponent: f64) -> Warp {
     Warp::Coupled { to: "alpha".to_owned(), power, scale, exponent }
 }
 
-/// Where roughness begins on axes that follow the dip beside mu = roughness = 0: alpha = 1e-4, a mirror to the eye.
-pub(super) const LEAST_ROUGHNESS: f64 = 0.01;
+/// Where roughness begins on axes that follow the dip beside mu = roughness = 0, those of `--suggest` too: alpha = 1e-4, a mirror to the
+/// eye. Shaders clamp there or above.
+pub const LEAST_ROUGHNESS: f64 = 0.01;
 
 /// The view cosine with a coupled warp, and roughness, 64 x 64: what integrals of microfacets are read best from.
 pub(super) fn view_and_roughness(view: Warp, roughness: Warp) -> Vec<Axis> {

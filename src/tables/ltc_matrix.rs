@@ -190,8 +190,9 @@ impl Baker for Matrix {
                 continue;
             }
             let fitted = ltc_fit::fit(&*model, view, wanted, |f| {
-                // NaN is not content
-                self.parts.iter().filter(|p| mine(**p)).all(|p| channel(*p, f).spread <= tolerance)
+                // NaN is not content; entries may be small and agree before the lobe does
+                let content = |v: Value| v.spread <= tolerance && v.error <= tolerance;
+                self.parts.iter().filter(|p| mine(**p)).all(|p| content(channel(*p, f)))
             })?;
             e.evaluations = e.evaluations.saturating_add(fitted.evaluations);
             for (i, part) in self.parts.iter().enumerate().filter(|(_, p)| mine(**p)) {

@@ -1,7 +1,7 @@
 //! Code of formulas: compiled and run where its compiler is there, parsed and validated by `naga`.
 
-use crate::split::GGX;
-use crate::{common, split};
+use crate::analytic::split::GGX;
+use crate::{analytic::split, common};
 use brdfbake::report::analytic::{Fit, Form, Lang, table};
 use naga::front::{glsl, wgsl};
 use naga::valid::{Capabilities, ValidationFlags, Validator};

@@ -1,6 +1,6 @@
 //! Tables of one to four axes and their files.
 
-use super::sample;
+use crate::sample;
 use brdfbake::encode::{EncodeError, EncodeInput, FileOption, Storage, encoder, quantise_table};
 use brdfbake::grid::{Axis, Channel, Grid, Quantity, Table, Texel};
 

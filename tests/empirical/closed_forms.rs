@@ -1,6 +1,6 @@
 //! Closed forms, typed here as the papers have them, against quadrature in the models' charts.
 
-use crate::support::{albedo, average, model, quadrature};
+use crate::empirical::support::{albedo, average, model, quadrature};
 use brdfbake::integrate::View;
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -2,7 +2,7 @@
 //!
 //! Values: scans of the reference sheet, to the digits given there.
 
-use crate::support::{albedo, model, quadrature};
+use crate::empirical::support::{albedo, model, quadrature};
 use brdfbake::integrate::View;
 use std::f64::consts::PI;
 

@@ -1,6 +1,6 @@
 //! Where one model becomes another, and sums of lobes.
 
-use crate::support::{model, quadrature};
+use crate::empirical::support::{model, quadrature};
 use brdfbake::integrate::View;
 use brdfbake::math::frame;
 use brdfbake::models::Brdf;

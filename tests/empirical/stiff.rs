@@ -1,6 +1,6 @@
 //! The ends of the parameter ranges: no NaN, no infinity, and an albedo where one exists.
 
-use crate::support::model;
+use crate::empirical::support::model;
 use brdfbake::integrate::View;
 use brdfbake::math::frame;
 use brdfbake::tables::integral::{Functional, integrate};

@@ -1,6 +1,6 @@
 //! Every row of the reference files.
 
-use crate::support::{albedo, model, quadrature, records};
+use crate::empirical::support::{albedo, model, quadrature, records};
 use brdfbake::integrate::View;
 use brdfbake::math::frame;
 

@@ -1,8 +1,8 @@
 //! Tables that an engine puts into one array: Bevy's area lights in one file, Ogre-Next's three files.
 
 use crate::common::shared;
-use crate::compare::{Case, HALF, agree, ltc, not_worse, size, truth};
-use crate::support::{Texture, bake, npy, picture, plan};
+use crate::engines::compare::{Case, HALF, agree, ltc, not_worse, size, truth};
+use crate::engines::support::{Texture, bake, npy, picture, plan};
 use brdfbake::encode::read;
 use brdfbake::recipe::parse;
 

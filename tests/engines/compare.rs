@@ -1,7 +1,7 @@
 //! Baked against shipped files: read by the engine's own lookup at points between the texels, against fresh integrals.
 
 use crate::common::shared;
-use crate::support::{Texture, bake, exact, npy, numbers, picture, plan};
+use crate::engines::support::{Texture, bake, exact, npy, numbers, picture, plan};
 use brdfbake::grid::{Axis, Quantity, Texel};
 use brdfbake::recipe::Plan;
 use brdfbake::recipe::engine;

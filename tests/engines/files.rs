@@ -1,6 +1,6 @@
 //! Names, text round the numbers, and several tables in one file.
 
-use crate::support::{bake, numbers};
+use crate::engines::support::{bake, numbers};
 use brdfbake::recipe::parse;
 
 const TABLE: &str = "[[table]]\nkind = 'fresnel-schlick'\n";

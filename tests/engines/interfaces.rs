@@ -1,7 +1,7 @@
 //! Rough interfaces: the arrays of Cycles and the headers of OSL.
 
 use crate::common::shared;
-use crate::support::{bake, npy, numbers, plan};
+use crate::engines::support::{bake, npy, numbers, plan};
 use brdfbake::verify::reconstruction::Probe;
 use glam::DVec3;
 use rayon::prelude::*;

@@ -3,7 +3,7 @@
 //! lights' authors (`values/ltc.csv`). The texels are far from any symmetry: with axes swapped, rows or a root turned round, a shift
 //! or a channel of another place, they have other values.
 
-use crate::support::{npy, numbers, picture, plan};
+use crate::engines::support::{npy, numbers, picture, plan};
 use brdfbake::encode::{self, EncodeInput, Storage, quantise_table};
 use brdfbake::grid::Table;
 use brdfbake::recipe::{ENGINES, PlannedTable};

@@ -1,7 +1,7 @@
 //! `--suggest`: the printed recipe bakes, and the printed lines read what it bakes.
 
-use crate::compare::truth;
-use crate::support::{Texture, bake, picture};
+use crate::engines::compare::truth;
+use crate::engines::support::{Texture, bake, picture};
 use brdfbake::cancel::Cancel;
 use brdfbake::pipeline::suggest::{Suggestion, Want, suggest};
 use brdfbake::recipe::{Reader, engine, parse};

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks KTX2 files against the rules of the KTX 2.0 specification, numbered as `ktx validate` of KTX-Software numbers them.
 
-    BRDFBAKE_FOREIGN=foreign-out cargo test --test foreign -- --ignored
+    BRDFBAKE_FOREIGN=foreign-out cargo test --test files -- --ignored write_
     python3 tests/foreign/ktx2_rules.py foreign-out
     python3 tests/foreign/ktx2_rules.py --broken foreign-out
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares what `nvddsinfo` (NVIDIA Texture Tools, Debian package libnvtt-bin) says of DDS files with what they must hold.
 
-    BRDFBAKE_FOREIGN=foreign-out cargo test --test foreign -- --ignored
+    BRDFBAKE_FOREIGN=foreign-out cargo test --test files -- --ignored write_
     python3 tests/foreign/nvddsinfo.py foreign-out
 
 Exit code: 0 all agree, 1 a difference, 2 nothing to compare.

@@ -2,7 +2,7 @@
 """Reads files of brdfbake with OpenEXR, OpenImageIO and NumPy and compares what they see.
 
     pip install OpenEXR OpenImageIO numpy
-    BRDFBAKE_FOREIGN=foreign-out cargo test --test foreign -- --ignored
+    BRDFBAKE_FOREIGN=foreign-out cargo test --test files -- --ignored write_
     python3 tests/foreign/read_back.py foreign-out
 
 Every .exr, .png, .hdr and .npy below the folder is read, and .dds of blocks. Next to a file, `<name>.expected.json` (written by tests/foreign.rs) says

@@ -1,7 +1,7 @@
 // Reads the KTX2 files of tests/foreign.rs with npm ktx-parse (and fzstd for Zstandard) and compares what it sees.
 //
 //     npm install --no-save ktx-parse fzstd
-//     BRDFBAKE_FOREIGN=foreign-out cargo test --test foreign -- --ignored
+//     BRDFBAKE_FOREIGN=foreign-out cargo test --test files -- --ignored write_
 //     node tests/foreign/read_ktx2.mjs foreign-out
 //
 // Exit code: 0 all agree, 1 a difference, 2 nothing to compare.

@@ -1,6 +1,6 @@
 //! Pictures, volumes and arrays as KTX2 and DDS, with options, and what they must hold.
 
-use super::sample;
+use crate::sample;
 use brdfbake::encode::{EncodeInput, FileOption, Quantised, Shape, Storage, encoder, quantise_table};
 use brdfbake::grid::{Axis, Channel, Grid, Quantity, Table, Texel};
 use std::path::Path;

@@ -3,7 +3,7 @@
 
     pip install OpenEXR OpenImageIO numpy
     python3 tests/foreign/write_out.py foreign-out-in
-    BRDFBAKE_FOREIGN_IN=foreign-out-in cargo test --test foreign -- --ignored
+    BRDFBAKE_FOREIGN_IN=foreign-out-in cargo test --test files -- --ignored files_of
 
 The expected values are those that the same library reads back, so that lossy compressions are covered too.
 """

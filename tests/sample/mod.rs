@@ -1,5 +1,9 @@
 //! A small table and its provenance, for the tests of files and reports.
-#![allow(dead_code, reason = "each test file uses a part of it")]
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    reason = "each test file uses a part of it; a test may fail by panicking"
+)]
 
 use brdfbake::encode::{EncodeInput, Encoder, Storage, quantise_table};
 use brdfbake::grid::provenance::{

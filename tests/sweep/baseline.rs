@@ -1,7 +1,7 @@
 //! What the estimates and the costs of a model were before its stopping rule was one: medians that must not grow.
 
-use crate::check::{Line, Outcome, TOLERANCES, median};
-use crate::rows::Row;
+use crate::sweep::check::{Line, Outcome, TOLERANCES, median};
+use crate::sweep::rows::Row;
 use std::collections::BTreeMap;
 use std::path::Path;
 

@@ -1,6 +1,6 @@
 //! What the product says of the rows of a table of truths, and whether it is honest.
 
-use crate::rows::Row;
+use crate::sweep::rows::Row;
 use brdfbake::integrate::View;
 use brdfbake::models::{self, Params};
 use brdfbake::tables::integral::{Functional, integrate};

@@ -1,8 +1,8 @@
 //! Kinds in closed form: the textbook's formula, written again.
 
-use crate::kinds::{NONE, Truths};
-use crate::quad::{self, mark, sharp, sorted};
-use crate::texel::{Pick, Texel};
+use crate::sweep::kinds::{NONE, Truths};
+use crate::sweep::quad::{self, mark, sharp, sorted};
+use crate::sweep::texel::{Pick, Texel};
 use brdfbake::models::Params;
 use brdfbake::terms::{burley_diffusion, dipole, metals, skin};
 use serde_json::{Map, Value, json};
@@ -565,7 +565,7 @@ fn merl(t: &Texel, p: &Params) -> Truths {
     let (mu_o, mu_i) = (along + across, along - across);
     let alpha = draw.params.number("alpha");
     let value = if mu_o > 0.0 && mu_i > 0.0 {
-        crate::lobe::value(&draw, alpha, [h, cos_d], [mu_o, mu_i])
+        crate::sweep::lobe::value(&draw, alpha, [h, cos_d], [mu_o, mu_i])
     } else {
         0.0
     };

@@ -1,10 +1,10 @@
 //! Curves over the cosine, and the models that are made of them.
 
-use crate::draw::Draw;
-use crate::lobe;
-use crate::lobes;
-use crate::quad::{self, mark, sharp, sorted, two_settings};
-use crate::truth::{f_avg, masking, once, schlick_of};
+use crate::sweep::draw::Draw;
+use crate::sweep::lobe;
+use crate::sweep::lobes;
+use crate::sweep::quad::{self, mark, sharp, sorted, two_settings};
+use crate::sweep::truth::{f_avg, masking, once, schlick_of};
 use brdfbake::math::special::cos_pow;
 use brdfbake::models::microfacet::{Fresnel, Masking};
 use brdfbake::terms::charlie;

@@ -4,7 +4,7 @@
 //! rho and q = r^2 / rho^2: `mu_i (1 + r^2) = c (1 - q rho^2) + 2 s p rho = c q (end - rho)(rho + 1/(q end))`, where `end` is the horizon,
 //! and `wo.wh = (mu_i + c) sqrt(1 + r^2) / 2`: nothing cancels. Known lines are ends of pieces.
 
-use crate::quad::{Edge, Setting, Sum, mark, sharp, sorted};
+use crate::sweep::quad::{Edge, Setting, Sum, mark, sharp, sorted};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

@@ -1,13 +1,13 @@
 //! Fitted kinds: the estimate is that of the stated residual, which is integrated here for the parameters that the product found.
 
-use crate::check::Outcome;
-use crate::closed::Profile;
-use crate::facets::Pair;
-use crate::kinds;
-use crate::lobe;
-use crate::quad::{self, Setting, mark, sharp, sorted};
-use crate::texel::{Pick, Texel};
-use crate::truth;
+use crate::sweep::check::Outcome;
+use crate::sweep::closed::Profile;
+use crate::sweep::facets::Pair;
+use crate::sweep::kinds;
+use crate::sweep::lobe;
+use crate::sweep::quad::{self, Setting, mark, sharp, sorted};
+use crate::sweep::texel::{Pick, Texel};
+use crate::sweep::truth;
 use rayon::prelude::*;
 use serde_json::json;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -46,7 +46,7 @@ fn outcome(
 /// `sqrt(int (p - q)^2 dr / int p^2 dr)` of a fit, p = 2 pi r R.
 fn gaussians(seed: u64, number: u64, row: usize) -> (String, Vec<Outcome>) {
     let mut pick = Pick::new("gaussian-fit", seed, number);
-    let mut texel = crate::closed::attempt("diffusion-profile", "ring", &mut pick);
+    let mut texel = crate::sweep::closed::attempt("diffusion-profile", "ring", &mut pick);
     let count = 2 + pick.0.index(5);
     texel.params.remove("scale");
     texel.kind = "gaussian-fit".to_owned();

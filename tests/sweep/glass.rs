@@ -1,9 +1,9 @@
-//! The part of the flux that crosses a rough interface, over facet slopes as in [`crate::facets`].
+//! The part of the flux that crosses a rough interface, over facet slopes as in [`crate::sweep::facets`].
 //!
 //! `T = int P22 (1 - F) (c + s x) G2(wo, wt) / mu_o dx dy` over the facets that face wo and refract across.
 
-use crate::facets::quadratic;
-use crate::quad::{Edge, Setting, Sum, mark, sharp, sorted};
+use crate::sweep::facets::quadratic;
+use crate::sweep::quad::{Edge, Setting, Sum, mark, sharp, sorted};
 use brdfbake::terms::fresnel;
 use brdfbake::terms::refraction::{self, Across};
 use brdfbake::terms::smith::Ndf;

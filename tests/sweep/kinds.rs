@@ -1,10 +1,10 @@
 //! Draws of texels, and the truths of the kinds that are integrals of a model.
 
-use crate::draw::{self, Draw};
-use crate::quad::{self, two_settings};
-use crate::texel::{Pick, Texel};
-use crate::truth;
-use crate::{closed, lines};
+use crate::sweep::draw::{self, Draw};
+use crate::sweep::quad::{self, two_settings};
+use crate::sweep::texel::{Pick, Texel};
+use crate::sweep::truth;
+use crate::sweep::{closed, lines};
 use brdfbake::models;
 use brdfbake::terms::{fresnel, schlick};
 use serde_json::{Map, Value, json};
@@ -314,7 +314,7 @@ fn mean(
 
 fn mean_reflected(draw: &Draw) -> (f64, f64) {
     if draw.flat() {
-        return mean(draw, &quad::MEDIUM, &|d, _, _| crate::lobe::fresnel(&d.params).0.at(d.mu));
+        return mean(draw, &quad::MEDIUM, &|d, _, _| crate::sweep::lobe::fresnel(&d.params).0.at(d.mu));
     }
     let setting = if draw.model.id.ends_with("-glass") { &quad::LOOSE } else { &quad::MEDIUM };
     mean(draw, setting, &|d, setting, tolerance| {
@@ -403,7 +403,8 @@ fn generalised(t: &Texel) -> Truths {
             if draw.flat() {
                 (curve(draw.mu), 1e-15)
             } else {
-                let lobe = crate::lobe::visible(&draw.model.id[..], draw.params.number("alpha")).times(curve);
+                let lobe =
+                    crate::sweep::lobe::visible(&draw.model.id[..], draw.params.number("alpha")).times(curve);
                 two_settings(|s, t| lobe.integrate(draw.mu, 0.0, s, t))
             }
         }

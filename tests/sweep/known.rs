@@ -1,7 +1,7 @@
 //! The rules of the truths against values that neither they nor the product made: `tests/values/integrals.csv`.
 
-use crate::draw::Draw;
-use crate::truth;
+use crate::sweep::draw::Draw;
+use crate::sweep::truth;
 use brdfbake::models::{self, Params};
 use serde_json::{Map, Value, json};
 

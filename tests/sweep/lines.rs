@@ -1,9 +1,9 @@
 //! Kinds that are integrals over one or two variables, or quantiles of such: spectra, diffusion, phase functions, samples.
 
-use crate::closed::{Phase, Profile, conductor};
-use crate::kinds::{NONE, Truths};
-use crate::quad::{self, Edge, Setting, mark, sharp, sorted};
-use crate::texel::Texel;
+use crate::sweep::closed::{Phase, Profile, conductor};
+use crate::sweep::kinds::{NONE, Truths};
+use crate::sweep::quad::{self, Edge, Setting, mark, sharp, sorted};
+use crate::sweep::texel::Texel;
 use brdfbake::models::{Brdf, Params};
 use brdfbake::terms::blackbody::{planck, wyman_xyz, xyz_to_srgb};
 use brdfbake::terms::metals;

@@ -1,8 +1,8 @@
-//! The integrand of each half-vector lobe, with its lines: written for [`crate::facets`], from terms in closed form.
+//! The integrand of each half-vector lobe, with its lines: written for [`crate::sweep::facets`], from terms in closed form.
 
-use crate::draw::Draw;
-use crate::facets::{Facets, Lines, Pair};
-use crate::quad::{Setting, Sum, mark, sharp, sorted};
+use crate::sweep::draw::Draw;
+use crate::sweep::facets::{Facets, Lines, Pair};
+use crate::sweep::quad::{Setting, Sum, mark, sharp, sorted};
 use brdfbake::math::special::cos_pow;
 use brdfbake::models::Params;
 use brdfbake::models::microfacet::{Beckmann, Fresnel, Ggx, Masking, StudentT};
@@ -328,7 +328,8 @@ pub(crate) fn gtr_mu_lambda(alpha: f64, gamma: f64, mu: f64, setting: &Setting) 
     let from = mu / s;
     let d = |t: f64| gtr::d(alpha, gamma, DVec3::new(t, 0.0, 1.0) / t.hypot(1.0));
     let breaks = sorted(sharp(from), mark(1e60), [alpha, 1.0, 2.0 * from, from + alpha].map(mark).to_vec());
-    let peak = crate::quad::COARSE.pieces(&breaks, 0.0, &mut |at, _, _| shape(&d, s, mu, from, at.x)).value;
+    let peak =
+        crate::sweep::quad::COARSE.pieces(&breaks, 0.0, &mut |at, _, _| shape(&d, s, mu, from, at.x)).value;
     setting.pieces(&breaks, 1e-14 * peak, &mut |at, _, _| shape(&d, s, mu, from, at.x)).value
 }
 
@@ -382,7 +383,7 @@ pub(crate) fn value(draw: &Draw, alpha: f64, [theta_h, cos_d]: [f64; 2], [o, i]:
     let v = match draw.model.id {
         "kelemen" => 0.25 / (cos_d * cos_d),
         "torrance-sparrow" => 0.25 * (1.0 / (o * i)).min(2.0 * cos / (cos_d * o.max(i))),
-        _ => smith(crate::truth::masking(p), [o, i], [hidden(o), hidden(i)]),
+        _ => smith(crate::sweep::truth::masking(p), [o, i], [hidden(o), hidden(i)]),
     };
     factor * d * v
 }

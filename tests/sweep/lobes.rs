@@ -1,6 +1,6 @@
 //! Lobes whose azimuth integrates in closed form round an axis of their own: powers of a cosine, fibres, and the plain hemisphere.
 
-use crate::quad::{Setting, Sum, mark, sharp, sorted};
+use crate::sweep::quad::{Setting, Sum, mark, sharp, sorted};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// `cos^n` without the loss of digits that `1 - sin^2` has.

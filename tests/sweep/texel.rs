@@ -1,6 +1,6 @@
 //! Texels of every table kind: what is asked for, what the product says, and the table of truths.
 
-use crate::check::Outcome;
+use crate::sweep::check::Outcome;
 use brdfbake::grid::{Axis, Quantity, Texel as Place};
 use brdfbake::models::{self, Params};
 use brdfbake::tables::spec::{Bound, Request};
@@ -92,7 +92,7 @@ impl Texel {
     }
 
     /// The model and its parameters at the texel; white if asked.
-    pub(crate) fn draw(&self, white: bool) -> crate::draw::Draw {
+    pub(crate) fn draw(&self, white: bool) -> crate::sweep::draw::Draw {
         let (info, _) = models::find(&self.model).unwrap();
         let given: Map<String, Value> = self
             .params
@@ -115,7 +115,7 @@ impl Texel {
             params.set("f90", 1.0);
         }
         let phi = self.axis("phi");
-        crate::draw::Draw {
+        crate::sweep::draw::Draw {
             model: info,
             params,
             given,
@@ -164,7 +164,7 @@ impl Pick {
     }
 
     pub(crate) fn mu(&mut self) -> f64 {
-        crate::draw::view(&mut self.0)
+        crate::sweep::draw::view(&mut self.0)
     }
 }
 

@@ -1,11 +1,11 @@
 //! The truth of a draw: which rule integrates which model.
 
-use crate::curve::{Curve, split};
-use crate::draw::Draw;
-use crate::glass::Interface;
-use crate::lobe::{self, Lobe};
-use crate::lobes::{self, Over};
-use crate::quad::{self, Setting, Sum, mark, sharp, two_settings};
+use crate::sweep::curve::{Curve, split};
+use crate::sweep::draw::Draw;
+use crate::sweep::glass::Interface;
+use crate::sweep::lobe::{self, Lobe};
+use crate::sweep::lobes::{self, Over};
+use crate::sweep::quad::{self, Setting, Sum, mark, sharp, two_settings};
 use brdfbake::models::microfacet::{Beckmann, Fresnel, Ggx, Masking};
 use brdfbake::models::{Brdf, Params};
 use brdfbake::terms::refraction::Across;
@@ -108,8 +108,8 @@ pub(crate) fn albedo(draw: &Draw) -> Truth {
             let (e, error) = lobe(lobe::kelemen(number("alpha"), schlick_of(p), 1.0))?;
             Ok((e + number("rho") * (1.0 - e), error))
         }
-        "kulla-conty" | "turquin" | "fdez-aguera" => Ok(crate::curve::compensated(draw)),
-        "gltf" => Ok(crate::curve::gltf(draw)),
+        "kulla-conty" | "turquin" | "fdez-aguera" => Ok(crate::sweep::curve::compensated(draw)),
+        "gltf" => Ok(crate::sweep::curve::gltf(draw)),
         _ => match half_vector(draw) {
             Some((all, slack)) => lobe(all).map(|(e, error)| (e, error + slack * e)),
             None => Err("no independent rule for this model"),

@@ -1,7 +1,7 @@
 //! Any channels of a kind: the values are those of the layouts, the order is the one asked for, faults have their words.
 
 use crate::common::bake;
-use crate::support::{refused, request};
+use crate::tables_energy::support::{refused, request};
 use brdfbake::grid::{Axis, Texel};
 use brdfbake::recipe::parse;
 use brdfbake::tables::spec::Request;

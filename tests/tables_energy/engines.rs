@@ -1,7 +1,7 @@
 //! Whole tables of engines, from the folder that `BRDFBAKE_SHARED` names; the largest differences are printed.
 
 use crate::common::shared;
-use crate::support::table;
+use crate::tables_energy::support::table;
 use half::f16;
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! Closed forms and identities that tie the tables together.
 
 use crate::common::{axis, bake};
-use crate::support::{table, texel};
+use crate::tables_energy::support::{table, texel};
 use brdfbake::grid::{Axis, Texel};
 use brdfbake::integrate::gauss;
 use brdfbake::models::Functional;
@@ -160,7 +160,7 @@ fn four_axes_of_an_anisotropic_albedo_are_symmetric_and_obey_the_laws() {
     let bound = grid_table("albedo", "ggx", "e", "{}", axes);
     let table = bake(&bound, 1e-5).unwrap();
     let at = |mu: usize, phi: usize, x: usize, y: usize| table.values[mu + 3 * (phi + 3 * (x + 3 * y))];
-    let isotropic = crate::support::table("albedo", "ggx", "{}", &["e"], &["mu", "alpha"]);
+    let isotropic = crate::tables_energy::support::table("albedo", "ggx", "{}", &["e"], &["mu", "alpha"]);
     for mu in 0..3 {
         for phi in 0..3 {
             for x in 0..3 {

@@ -1,6 +1,6 @@
 //! Single texels against reference integrals (`values/integrals.csv`) and excerpts of other programs (`values/energy.csv`).
 
-use crate::support::{table, texel};
+use crate::tables_energy::support::{table, texel};
 use serde_json::Value as Json;
 use std::collections::BTreeMap;
 

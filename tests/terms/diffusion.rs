@@ -1,6 +1,6 @@
 //! Diffusion below surfaces and media: norms, inverses, limits.
 
-use crate::values::assert_relative;
+use crate::terms::values::assert_relative;
 use brdfbake::integrate::gauss;
 use brdfbake::terms::burley_diffusion::{self, Fit};
 use brdfbake::terms::dipole::{self, Dipole};

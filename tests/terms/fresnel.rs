@@ -1,6 +1,6 @@
 //! Fresnel factors: reference values, limits, reversibility, no NaN anywhere.
 
-use crate::values::{assert_relative, cosines, rows};
+use crate::terms::values::{assert_relative, cosines, rows};
 use brdfbake::math::frame;
 use brdfbake::terms::fresnel::{self, Polarised};
 use glam::DVec3;

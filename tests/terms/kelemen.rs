@@ -1,6 +1,6 @@
 //! The skin specular of GPU Gems 3: texels, their inverse, and the visibility of Kelemen and Szirmay-Kalos.
 
-use crate::values::{assert_relative, cosines, rows};
+use crate::terms::values::{assert_relative, cosines, rows};
 use brdfbake::math::frame;
 use brdfbake::terms::beckmann::Beckmann;
 use brdfbake::terms::kelemen;

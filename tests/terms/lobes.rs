@@ -1,6 +1,6 @@
 //! Blinn-Phong, GTR and the V-cavity: reference values, norms, samplers, finiteness.
 
-use crate::values::{Row, assert_relative, cosines, rows};
+use crate::terms::values::{Row, assert_relative, cosines, rows};
 use brdfbake::integrate::gauss;
 use brdfbake::integrate::sobol::{Sobol, replicate_mean};
 use brdfbake::math::frame;

@@ -1,6 +1,6 @@
 //! Indices of metals: Lazanyi's factor, Gulbrandsen's mapping.
 
-use crate::values::assert_relative;
+use crate::terms::values::assert_relative;
 use brdfbake::integrate::gauss;
 use brdfbake::terms::metals::{self, METALS};
 use brdfbake::terms::{blackbody, fresnel, gulbrandsen, lazanyi};

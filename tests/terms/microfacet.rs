@@ -1,6 +1,6 @@
 //! GGX and Beckmann with Smith masking: reference values, identities, finiteness over the whole domain.
 
-use crate::values::{Row, assert_relative, cosines, rows};
+use crate::terms::values::{Row, assert_relative, cosines, rows};
 use brdfbake::math::frame;
 use brdfbake::terms::beckmann::Beckmann;
 use brdfbake::terms::ggx::Ggx;

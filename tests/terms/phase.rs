@@ -1,6 +1,6 @@
 //! Phase functions: reference values, norms and mean cosines by Gauss rules, samplers.
 
-use crate::values::{assert_relative, rows};
+use crate::terms::values::{assert_relative, rows};
 use brdfbake::integrate::gauss;
 use brdfbake::terms::phase;
 use std::f64::consts::PI;

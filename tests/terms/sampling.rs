@@ -1,6 +1,6 @@
 //! Densities and samplers of facet normals: fixed numbers, norms by Gauss rules, moments by scrambled Sobol points.
 
-use crate::values::{assert_relative, rows};
+use crate::terms::values::{assert_relative, rows};
 use brdfbake::integrate::gauss;
 use brdfbake::integrate::sobol::{ReplicateMean, Sobol, replicate_mean};
 use brdfbake::math::{frame, special};

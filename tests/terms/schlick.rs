@@ -1,6 +1,6 @@
 //! Schlick's approximation and its generalisations.
 
-use crate::values::{assert_relative, cosines, rows};
+use crate::terms::values::{assert_relative, cosines, rows};
 use brdfbake::terms::schlick;
 
 const FILE: &str = "points_fresnel";

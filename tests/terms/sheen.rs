@@ -1,7 +1,7 @@
 //! Charlie and the velvets: reference values, norms, samplers, finiteness.
 
-use crate::lobes::{assert_sampler, hemisphere};
-use crate::values::{Row, assert_relative, cosines, rows};
+use crate::terms::lobes::{assert_sampler, hemisphere};
+use crate::terms::values::{Row, assert_relative, cosines, rows};
 use brdfbake::math::frame;
 use brdfbake::terms::{charlie, vcavity, velvet};
 use glam::{DVec2, DVec3};

@@ -1,7 +1,7 @@
 //! Student's t distribution: reference values over all exponents, its limits GGX and Beckmann, norms, samplers.
 
-use crate::sampling::{assert_moments, integrate_facing, moments};
-use crate::values::{Row, assert_relative, cosines, rows};
+use crate::terms::sampling::{assert_moments, integrate_facing, moments};
+use crate::terms::values::{Row, assert_relative, cosines, rows};
 use brdfbake::integrate::sobol::replicate_mean;
 use brdfbake::math::frame;
 use brdfbake::terms::beckmann::Beckmann;

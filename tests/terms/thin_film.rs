@@ -1,6 +1,6 @@
 //! Thin films: against Airy's formula in plain complex arithmetic, its limits, the series, and the eye's transform.
 
-use crate::values::assert_relative;
+use crate::terms::values::assert_relative;
 use brdfbake::integrate::gauss;
 use brdfbake::math::complex::Complex;
 use brdfbake::terms::fresnel;

@@ -1,6 +1,6 @@
 //! Transformed cosines, SGGX and the factors of multiple scattering: norms and identities.
 
-use crate::values::assert_relative;
+use crate::terms::values::assert_relative;
 use brdfbake::integrate::gauss;
 use brdfbake::integrate::sobol::Sobol;
 use brdfbake::math::frame;

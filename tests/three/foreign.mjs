@@ -1,6 +1,6 @@
 // A browser reads what brdfbake writes: PNG by its own decoder, GLSL through WebGL 2, WGSL through WebGPU.
 //
-//     BRDFBAKE_FOREIGN=foreign-out cargo test --test foreign --test containers -- --ignored write_
+//     BRDFBAKE_FOREIGN=foreign-out cargo test --test files -- --ignored write_
 //     NODE_PACKAGES=tests/three node tests/three/foreign.mjs foreign-out
 //
 // Exit code: 0 all agree, 1 a difference, 77 skipped.

@@ -20,8 +20,8 @@ fn context() -> Context {
         })
     };
     context.set_function("sqrt".into(), one(f64::sqrt)).unwrap();
-    context.set_function("cos".into(), one(f64::cos)).unwrap();
-    context.set_function("pow".into(), two(f64::powf)).unwrap();
+    context.set_function("cos".into(), one(libm::cos)).unwrap();
+    context.set_function("pow".into(), two(libm::pow)).unwrap();
     context.set_function("min".into(), two(f64::min)).unwrap();
     context.set_function("max".into(), two(f64::max)).unwrap();
     context

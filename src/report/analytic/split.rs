@@ -16,11 +16,13 @@
 use super::formula::{Formula, name, number, ratio};
 use super::{Fit, FitError, LINES, PRACTICAL_WEIGHT, STEPS, Sample, TOLERANCE};
 use crate::cancel::Cancel;
+use crate::grid::Axis;
 use crate::grid::expression::Expression;
 use crate::grid::scalar::Scalar;
 use crate::math::figures::short;
 use crate::math::rational::{self, Fitted, Point, Term, Terms};
 use crate::tables::Bound;
+use crate::tables::default_axes::LEAST_ROUGHNESS;
 use crate::verify::reconstruction::{PRACTICAL_ALPHA, PRACTICAL_MU};
 use rayon::prelude::*;
 
@@ -114,7 +116,7 @@ pub fn split_sum_until(cancel: &Cancel, bound: &Bound, degree: usize) -> Result<
     cancel.check()?;
     let (k_terms, k) = factor.ok_or_else(pole)?;
     let model = spec.model.as_ref().map_or("", |(info, _)| info.id);
-    let [lo, hi] = spec.grid.axes()[axes[1]].domain.map(|v| spec.grid.axes()[axes[1]].quantity.to_base(v));
+    let [lo, hi] = roughness(&spec.grid.axes()[axes[1]]).map(|r| r * r);
     let titles = [
         format!("Split sum of {model}, mu = n.v in [0, 1], alpha = roughness^2 in [{lo}, {hi}]"),
         format!("Rational, degree {degree}"),
@@ -146,7 +148,7 @@ fn nodes(
     let lines = if offset > 0.0 { LINES - 1 } else { LINES };
     let place = |i: usize| (i as f64 + offset) / (LINES - 1) as f64;
     let axes = bound.spec.grid.axes();
-    let [lo, hi] = axes[alpha_axis].domain.map(|v| axes[alpha_axis].quantity.to_base(v).sqrt());
+    let [lo, hi] = roughness(&axes[alpha_axis]);
     let one = |n: usize| {
         cancel.check()?;
         let (x, roughness) = (place(n % lines), lo + (hi - lo) * place(n / lines % lines));
@@ -170,6 +172,12 @@ fn nodes(
     };
     let all: Result<Vec<Option<Node>>, FitError> = (0..2 * lines * lines).into_par_iter().map(one).collect();
     Ok(all?.into_iter().flatten().collect())
+}
+
+/// Roughness where the fit is to hold; an axis that begins where the surface is a mirror to the eye stands for the mirror too.
+fn roughness(axis: &Axis) -> [f64; 2] {
+    let [lo, hi] = axis.domain.map(|v| axis.quantity.to_base(v).sqrt());
+    [if lo <= LEAST_ROUGHNESS { 0.0 } else { lo }, hi]
 }
 
 impl Node {

@@ -1,7 +1,7 @@
 //! Decodes the DDS files that `tests/foreign.rs` writes with the crates `ddsfile` and `image_dds`, and compares every texel.
 //!
 //! ```sh
-//! BRDFBAKE_FOREIGN=foreign-out cargo test --test foreign -- --ignored
+//! BRDFBAKE_FOREIGN=foreign-out cargo test --test files -- --ignored write_
 //! cargo run --manifest-path tests/foreign/dds/Cargo.toml -- foreign-out
 //! ```
 //! Exit code: 0 all agree, 1 a difference, 2 nothing to compare. Formats that the crate has not (packed words) are told and counted.

@@ -1,0 +1,15 @@
+//! Tables: their values, errors, laws and fits.
+
+mod analytic;
+mod common;
+mod counted;
+mod golden;
+mod honesty;
+mod laws;
+mod ltc;
+mod size;
+mod sweep;
+mod tables;
+mod tables_energy;
+mod tables_skin;
+mod texels;

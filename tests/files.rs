@@ -1,0 +1,13 @@
+//! Files: written, read back, compared; scenes and engines.
+
+mod common;
+mod compare;
+mod containers;
+mod counted;
+mod encode;
+mod encode_hostile;
+mod engines;
+mod foreign;
+mod sample;
+mod scene;
+mod written;

@@ -1,0 +1,14 @@
+//! The house itself: rooms, registries, recipes, generated text, and the command.
+
+mod cli;
+mod command;
+mod counted;
+mod examples;
+mod layering;
+mod layout;
+mod listed;
+mod mutants;
+mod readme;
+mod recipes;
+mod registry;
+mod writes;
