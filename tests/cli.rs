@@ -220,7 +220,7 @@ fn inspect_knows_what_a_file_holds() {
     for part in [
         "dfg.scale",
         "Walter2007",
-        "alpha = roughness^2",
+        "alpha = roughness * roughness",
         "tolerance",
         "reciprocity",
         "bilinear",

@@ -117,7 +117,7 @@ fn a_bake_that_is_killed_between_renames_is_finished_by_the_next() {
         assert!(told.contains("killed while it replaced files"), "{told}");
         // a recipe that fails finishes the work all the same, before it bakes
         let recipe = folder.path().join("recipe.toml");
-        fs::write(&recipe, "name = 'x'\n[[table]]\nkind = 'albedo'\nname = 'x'\nmodel = 'cook-torrance-1982'\ntolerance = 1e-2\n").unwrap();
+        fs::write(&recipe, "name = 'x'\n[[table]]\nkind = 'albedo'\nname = 'x'\nmodel = 'cook-torrance-1982'\ntolerance = 1e-2\naxis = [{ id = 'mu', length = 8 }, { id = 'roughness', length = 8 }]\n").unwrap();
         let o = brdfbake(&["bake", text(&recipe), "-o", text(folder.path())]);
         assert_eq!(o.status.code(), Some(4), "{}", err(&o));
         assert!(err(&o).contains("a run that was killed had left files"), "{}", err(&o));

@@ -6,7 +6,7 @@
 //! * descending: `x -> 1 - x`, so that index 0 holds the high end of the domain.
 //! * `value = lo + (hi - lo) inverse_warp(x)`, then clamped to `clamp` if one is given.
 
-use super::expression::{Expression, Formula};
+use super::expression::{Expression, PlainText};
 use super::quantity::{Quantity, by_id};
 use super::scalar::{Scalar, Slope};
 use super::warp::Warp;
@@ -243,7 +243,7 @@ impl Axis {
     }
 
     /// The texture coordinate that a shader computes from a value of the domain, as a formula in the ids of this quantity and of the
-    /// base quantity of a coupling; see [`Formula`]. A reader clamps it to [0, 1].
+    /// base quantity of a coupling; see [`PlainText`]. A reader clamps it to [0, 1].
     #[must_use]
     pub fn coordinate_formula(&self) -> String {
         let [lo, hi] = self.domain;
@@ -253,10 +253,10 @@ impl Axis {
         let x = self.spread(v, coupled);
         let len = count(self.len);
         let place = match self.texel {
-            Texel::Center => x.minus(number(self.offset).over(number(len))),
+            Texel::Center => x.minus(number(self.offset / len)),
             Texel::Endpoint => x.times(number(len - 1.0)).plus(number(0.5 - self.offset)).over(number(len)),
         };
-        place.write(&Formula, true)
+        place.write(&PlainText, true)
     }
 }
 

@@ -39,9 +39,9 @@ pub trait Notation: Debug {
 
 /// Formulas in reports and metadata, in the common words of C, shaders and Python: `sqrt(x)`, `pow(x, y)`, `cos`, `min`, `max`.
 #[derive(Debug, Clone, Copy)]
-pub struct Formula;
+pub struct PlainText;
 
-impl Notation for Formula {
+impl Notation for PlainText {
     fn number(&self, v: f64, _: bool) -> String {
         exact(v)
     }

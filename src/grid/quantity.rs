@@ -1,6 +1,6 @@
 //! What an axis can measure. A derived quantity (`roughness`) is read into its base quantity (`alpha`) by a named map.
 
-use super::expression::{Expression, Formula};
+use super::expression::{Expression, PlainText};
 use super::scalar::Scalar;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -221,7 +221,7 @@ impl Quantity {
     #[must_use]
     pub fn base_formula(&self) -> Option<String> {
         let base = self.base.as_ref()?;
-        Some(format!("{} = {}", base.id, base.map.to(Expression::name(self.id)).write(&Formula, true)))
+        Some(format!("{} = {}", base.id, base.map.to(Expression::name(self.id)).write(&PlainText, true)))
     }
 
     /// Value of the base quantity.

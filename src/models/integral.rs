@@ -7,11 +7,11 @@ use crate::integrate::{BATCH, Estimate, MAX_CHANNELS, Nodes, Sums, View, adaptiv
 
 /// Which rules may be taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Route {
-    /// The best that the model knows: a closed form, a reduction, its chart, or subdivision.
-    Best,
-    /// The chart or subdivision, to look at the others from outside.
-    Chart,
+pub enum Rules {
+    /// All that the model knows: a closed form, a reduction, its chart, or subdivision.
+    All,
+    /// Nodes in the hemisphere, by its chart or subdivision: to look at the others from outside.
+    Nodes,
 }
 
 /// The channel from the two sums that the usual functionals are made of.
@@ -79,7 +79,7 @@ pub fn integrate(
     view: impl Into<View>,
     functionals: &[Functional],
     tolerance: f64,
-    route: Route,
+    rules: Rules,
 ) -> Estimate {
     debug_assert!(functionals.len() <= MAX_CHANNELS);
     let view = view.into();
@@ -87,7 +87,7 @@ pub fn integrate(
         let mut total = Estimate::ZERO;
         let share = tolerance / parts.len().max(1) as f64;
         for &(weight, part) in parts.iter().filter(|(weight, _)| *weight > 0.0) {
-            total.add(weight, &integrate(part, view, functionals, share / weight, route));
+            total.add(weight, &integrate(part, view, functionals, share / weight, rules));
         }
         return total;
     }
@@ -99,7 +99,7 @@ pub fn integrate(
         return Estimate::exact(value);
     }
     let reduced = || model.reduced(view.mu, functionals, tolerance);
-    (route == Route::Best)
+    (rules == Rules::All)
         .then(reduced)
         .flatten()
         .unwrap_or_else(|| by_nodes(model, view, functionals, tolerance))
@@ -108,7 +108,7 @@ pub fn integrate(
 /// E(mu) by [`integrate`], in the plane of the tangent.
 #[must_use]
 pub fn directional_albedo(model: &dyn Brdf, mu_o: f64, tolerance: f64) -> Estimate {
-    integrate(model, mu_o, &[Functional::One], tolerance, Route::Best)
+    integrate(model, mu_o, &[Functional::One], tolerance, Rules::All)
 }
 
 /// In the chart of the model, or by subdivision.

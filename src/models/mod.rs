@@ -75,7 +75,7 @@ use crate::cite::Cite;
 use crate::integrate::{BATCH, Chart, Estimate, Nodes};
 pub use functional::Functional;
 use glam::{DVec2, DVec3};
-pub use integral::Route;
+pub use integral::Rules;
 pub use param::{Column, Kind, Param, ParamError, Params, Preset, Sweep, Value};
 use std::fmt::Debug;
 

@@ -3,7 +3,7 @@
 use super::{TexelError, finite};
 use crate::integrate::{Estimate, View};
 pub use crate::models::Functional;
-use crate::models::{Brdf, Route, integral};
+use crate::models::{Brdf, Rules, integral};
 
 /// Integrates the functionals of a model at a view to an absolute tolerance by the best rule that the model knows.
 ///
@@ -15,7 +15,7 @@ pub fn integrate(
     functionals: &[Functional],
     tolerance: f64,
 ) -> Result<Estimate, TexelError> {
-    finite(integral::integrate(model, view, functionals, tolerance, Route::Best), functionals.len())
+    finite(integral::integrate(model, view, functionals, tolerance, Rules::All), functionals.len())
 }
 
 /// The same in the chart of the model, whatever else it knows.
@@ -28,5 +28,5 @@ pub fn integrate_in_chart(
     functionals: &[Functional],
     tolerance: f64,
 ) -> Result<Estimate, TexelError> {
-    finite(integral::integrate(model, view, functionals, tolerance, Route::Chart), functionals.len())
+    finite(integral::integrate(model, view, functionals, tolerance, Rules::Nodes), functionals.len())
 }
