@@ -12,7 +12,8 @@ use brdfbake::encode::read::read_bytes;
 use brdfbake::encode::{ENCODERS, EncodeInput, Encoder, FileOption, Shape, Storage, quantise_table};
 use brdfbake::grid::{Axis, Grid, Quantity, Table, Texel, Warp};
 use brdfbake::pipeline::{PipelineError, Settings, Silent, memory, run};
-use brdfbake::recipe::{Plan, parse};
+use brdfbake::plan::Plan;
+use brdfbake::recipe::parse;
 use exr::image::write::WritableImage;
 use exr::prelude::{
     AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes,

@@ -7,3 +7,5 @@ mod fuzz;
 mod names;
 mod presets;
 mod requests;
+#[path = "recipes/text.rs"]
+mod text;

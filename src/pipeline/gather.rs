@@ -2,8 +2,7 @@
 
 use super::PipelineError;
 use super::transaction::Transaction;
-use crate::encode;
-use crate::recipe::Plan;
+use crate::plan::Plan;
 use std::collections::BTreeMap;
 
 /// Files that several tables share, until the last of them is there.
@@ -21,7 +20,7 @@ struct Shared {
 impl<'a> Gathered<'a> {
     pub(super) fn new(plan: &'a Plan) -> Gathered<'a> {
         let mut shared: BTreeMap<String, Shared> = BTreeMap::new();
-        for file in plan.tables.iter().filter_map(|t| t.file.as_ref()) {
+        for file in plan.tables.iter().filter_map(|t| t.asked.file.as_ref()) {
             shared.entry(file.clone()).or_insert(Shared { left: 0, parts: Vec::new() }).left += 1;
         }
         shared.retain(|_, s| s.left > 1);
@@ -52,14 +51,11 @@ impl<'a> Gathered<'a> {
 
     /// One file of the parts that the tables wrote, in their order.
     fn join(&self, table: usize, name: &str, parts: &[Vec<u8>]) -> Result<Vec<u8>, PipelineError> {
-        let table = self.plan.tables.get(table);
-        let output = table.and_then(|t| t.outputs.first());
-        let joined = match output.and_then(|o| encode::encoder(&o.container)) {
-            Some(encoder) => encoder.join(parts),
-            None => Ok(parts.concat()),
-        };
-        joined.map_err(|error| PipelineError::Encode {
-            table: table.map_or_else(String::new, |t| t.name.clone()),
+        let table = &self.plan.tables[table];
+        // tables of one file have one output, and the same
+        let Some(output) = table.outputs.first() else { return Ok(parts.concat()) };
+        output.encoder.join(parts).map_err(|error| PipelineError::Encode {
+            table: table.name().to_owned(),
             output: name.to_owned(),
             error,
         })

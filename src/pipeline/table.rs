@@ -7,10 +7,10 @@ use super::manifest::tool;
 use super::texels::{Chosen, Source};
 use super::{Event, Extremum, FileRecord, PipelineError, Progress, TableRecord, size};
 use crate::cancel::Cancel;
-use crate::encode::{self, EncodeInput, Shape, Storage, Unstored};
+use crate::encode::{EncodeInput, Unstored};
 use crate::grid::Provenance;
 use crate::grid::provenance::{AxisRecord, Encoding, Integration, RecipeId, SCHEMA, SizeRecord, Subject};
-use crate::recipe::{Output, Plan, PlannedTable};
+use crate::plan::{Output, Plan, PlannedTable};
 use crate::tables::driver::{self, Options};
 use crate::tables::{Bound, Spec, source};
 use crate::verify::{self, Finding, Verified, reconstruction::Probe};
@@ -34,9 +34,9 @@ pub(super) fn make(
     cancel: &Cancel,
     progress: &dyn Progress,
 ) -> Result<Made, PipelineError> {
-    let name = planned.name.as_str();
+    let name = planned.name();
     let start = Instant::now();
-    let sized = match &planned.size {
+    let sized = match &planned.asked.size {
         Some(sizing) => Some(size::resolve(planned, sizing, cancel)?),
         None => None,
     };
@@ -48,12 +48,14 @@ pub(super) fn make(
     progress.event(&Event::TableStarted { table: name, index, texels: spec.grid.len() });
     let start = Instant::now();
     let tick = |done| progress.event(&Event::TableProgress { table: name, index, done });
-    let options = Options { tolerance: planned.tolerance, on_miss: planned.on_miss, cancel, progress: &tick };
+    let options =
+        Options { tolerance: planned.tolerance, on_miss: planned.asked.on_miss, cancel, progress: &tick };
     let table = driver::bake(&planned.bound, options)
         .map_err(|error| PipelineError::Bake { table: name.to_owned(), error })?;
     let bake_seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let checked = verify::check_until(cancel, &planned.bound, table, planned.tolerance, &planned.waivers)?;
+    let checked =
+        verify::check_until(cancel, &planned.bound, table, planned.tolerance, &planned.asked.waivers)?;
     let (verified, warnings) = checked.map_err(PipelineError::Laws)?;
     for finding in &warnings {
         progress.event(&Event::Finding { table: name, finding });
@@ -68,9 +70,9 @@ pub(super) fn make(
         warnings,
         files: Vec::new(),
     };
-    let names = super::file_names(planned);
+    let names = planned.files();
     // the laws are those of the integrals; what is fitted to them is judged by how it reads
-    let fitted = match planned.texels.are_exact() {
+    let fitted = match planned.asked.texels.are_exact() {
         true => None,
         false => Some(fit::fit(planned, &planned.bound, verified.table(), planned.tolerance, false, cancel)?),
     };
@@ -96,7 +98,7 @@ pub(super) fn make(
 fn size_found<'a>(found: &'a PlannedTable, record: &'a SizeRecord, index: usize, seconds: f64) -> Event<'a> {
     let axes = found.bound.spec.grid.axes();
     Event::SizeFound {
-        table: &found.name,
+        table: found.name(),
         index,
         size: axes.iter().map(|a| a.len).collect(),
         coordinates: axes.iter().map(|a| a.coordinate_formula()).collect(),
@@ -113,24 +115,17 @@ fn encode_output(
     file: &str,
 ) -> Result<(FileRecord, Vec<u8>), PipelineError> {
     let table = source.table;
-    let (name, label) = (planned.name.clone(), output.to_string());
-    let unknown = || PipelineError::Encode {
-        table: planned.name.clone(),
-        output: output.to_string(),
-        error: encode::EncodeError::Unknown { id: output.to_string() },
-    };
-    let encoder = encode::encoder(&output.container).ok_or_else(unknown)?;
-    let storage = Storage::find(&output.storage).ok_or_else(unknown)?;
+    let (name, label) = (planned.name().to_owned(), output.to_string());
+    let (encoder, storage) = (output.encoder, output.storage);
     let Chosen { stored, reconstruction, texels } =
-        source.choose(planned.texels, storage).map_err(|error| match error {
+        source.choose(planned.asked.texels, storage).map_err(|error| match error {
             Unstored::Cancelled(stopped) => stopped.into(),
             Unstored::Range(error) => {
                 PipelineError::Range { table: name.clone(), output: label.clone(), error }
             }
         })?;
     source.cancel.check()?;
-    let options = output.file_options();
-    let shape = Shape { grid: &table.grid, channels: table.channels.len(), storage, options: &options };
+    let shape = output.shape(&table.grid, table.channels.len());
     let encoding = Encoding {
         storage: storage.id().to_owned(),
         largest_error: stored.largest_error.value,
@@ -152,7 +147,7 @@ fn encode_output(
         // the estimates are those of the integrals
         errors: if texels.as_ref().is_some_and(|t| t.held != "exact") { &[] } else { &table.errors },
         storage,
-        options: &options,
+        options: &output.options,
         provenance_json: &json,
         cancel: source.cancel,
     };
@@ -160,14 +155,13 @@ fn encode_output(
     // a library that is stopped tells of a fault of its own
     source.cancel.check()?;
     let mut bytes = bytes.map_err(|error| PipelineError::Encode { table: name, output: label, error })?;
-    let [before, after] = &planned.around;
-    if let Some(text) = before {
+    if let Some(text) = &planned.asked.before {
         bytes.splice(0..0, text.bytes());
     }
-    bytes.extend(after.iter().flat_map(|text| text.bytes()));
+    bytes.extend(planned.asked.after.iter().flat_map(|text| text.bytes()));
     let record = FileRecord {
         file: file.to_owned(),
-        container: output.container.clone(),
+        container: encoder.id().to_owned(),
         bytes: bytes.len() as u64,
         blake3: blake3::hash(&bytes).to_hex().to_string(),
         encoding,
@@ -185,8 +179,8 @@ fn provenance(plan: &Plan, planned: &PlannedTable, verified: &Verified) -> Prove
     Provenance {
         schema: SCHEMA,
         tool: tool(),
-        recipe: RecipeId { name: plan.name.clone(), hash: planned.hash.clone() },
-        name: planned.name.clone(),
+        recipe: RecipeId { name: plan.name.clone(), hash: planned.identity.clone() },
+        name: planned.name().to_owned(),
         table: Subject {
             id: spec.kind.id.to_owned(),
             title: format!("{}, {}", spec.kind.title, spec.layout.title()),
@@ -248,7 +242,7 @@ fn finished<'a>(
         })
     });
     Event::TableFinished {
-        table: &planned.name,
+        table: planned.name(),
         index,
         tolerance: planned.tolerance,
         integration: Extremum::from(&integration.largest_error),
