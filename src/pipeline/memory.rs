@@ -71,11 +71,16 @@ fn shared(plan: &Plan) -> u64 {
         t.asked.file.is_some()
             && plan.tables.iter().filter(|other| other.asked.file == t.asked.file).count() > 1
     };
-    let file = |t: &PlannedTable| outputs(t, &grid(t)).map(|(e, s)| bytes(e.most_bytes(&s))).sum::<u64>();
-    plan.tables.iter().filter(named).map(|t| file(t).saturating_mul(JOINED)).fold(0, u64::saturating_add)
+    let part = |t: &PlannedTable| {
+        let (grid, channels) = (grid(t), t.bound.spec.layout.channels.len());
+        let file: u64 = outputs(t, &grid).map(|(e, s)| bytes(e.most_bytes(&s))).sum();
+        file.saturating_mul(JOINED).saturating_add(bytes(grid.len() * channels).saturating_mul(8))
+    };
+    plan.tables.iter().filter(named).map(part).fold(0, u64::saturating_add)
 }
 
-/// Times that a part is held while files are joined: as it was written, unpacked, and written again.
+/// Times that the bytes of a part are held while a file is put together, besides its numbers: packed, behind those of others, compressed,
+/// and in the file; a block storage has its blocks besides.
 const JOINED: u64 = 5;
 
 /// Most bytes that a table takes.

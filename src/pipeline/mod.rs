@@ -231,11 +231,11 @@ pub fn run(
     let mut findings = Vec::new();
     let mut doubts: Vec<Finding> = Vec::new();
     for (index, planned) in plan.tables.iter().enumerate() {
-        match pool.install(|| table::make(plan, planned, index, cancel, progress)) {
+        match pool.install(|| table::make(plan, planned, index, gathered.is_shared(planned), cancel, progress)) {
             Ok(made) if findings.is_empty() => {
                 let doubtful = |f: &&Finding| settings.strict && f.result.is_doubt();
                 doubts.extend(made.warnings.iter().filter(doubtful).cloned());
-                gathered.take(index, made.files, &mut files)?;
+                gathered.take(index, made.files, cancel, &mut files)?;
                 tables.push(made.record);
             }
             Ok(_) => {}

@@ -4,10 +4,11 @@ use super::advice::advice;
 use super::event::{ChoiceEntry, ReconstructionEntry};
 use super::fit;
 use super::manifest::tool;
+use super::gather::{Part, Written};
 use super::texels::{Chosen, Source};
 use super::{Event, Extremum, FileRecord, PipelineError, Progress, TableRecord, size};
 use crate::cancel::Cancel;
-use crate::encode::{EncodeInput, Unstored};
+use crate::encode::{EncodeInput, Label, Unstored};
 use crate::grid::Provenance;
 use crate::grid::provenance::{AxisRecord, Encoding, Integration, RecipeId, SCHEMA, SizeRecord, Subject};
 use crate::plan::{Output, Plan, PlannedTable};
@@ -24,13 +25,15 @@ pub(super) struct Made {
     pub(super) record: TableRecord,
     /// What was found that does not stop a bake.
     pub(super) warnings: Vec<Finding>,
-    pub(super) files: Vec<(String, Vec<u8>)>,
+    pub(super) files: Vec<(String, Written)>,
 }
 
+/// Makes a table. `shared`: other tables of the plan are in its file, which is written when all are there.
 pub(super) fn make(
     plan: &Plan,
     planned: &PlannedTable,
     index: usize,
+    shared: bool,
     cancel: &Cancel,
     progress: &dyn Progress,
 ) -> Result<Made, PipelineError> {
@@ -86,7 +89,7 @@ pub(super) fn make(
             probe: probe.as_ref(),
             cancel,
         };
-        let (record, bytes) = encode_output(planned, output, &source, &provenance, &file)?;
+        let (record, bytes) = encode_output(planned, output, &source, &provenance, &file, shared)?;
         made.record.files.push(record);
         made.files.push((file, bytes));
     }
@@ -113,7 +116,8 @@ fn encode_output(
     source: &Source<'_>,
     provenance: &Provenance,
     file: &str,
-) -> Result<(FileRecord, Vec<u8>), PipelineError> {
+    shared: bool,
+) -> Result<(FileRecord, Written), PipelineError> {
     let table = source.table;
     let (name, label) = (planned.name().to_owned(), output.to_string());
     let (encoder, storage) = (output.encoder, output.storage);
@@ -139,6 +143,22 @@ fn encode_output(
     };
     let json = serde_json::to_string(&provenance)
         .map_err(|e| PipelineError::Metadata { table: name.clone(), message: e.to_string() })?;
+    let as_read = source.probe.and_then(|p| p.measure_without_offset(&stored.values));
+    let record = |bytes: &[u8]| FileRecord {
+        file: file.to_owned(),
+        container: encoder.id().to_owned(),
+        bytes: bytes.len() as u64,
+        blake3: blake3::hash(bytes).to_hex().to_string(),
+        encoding,
+        reconstruction,
+        texels: texels.clone(),
+        as_read,
+    };
+    if shared && !encoder.is_bare() {
+        let part = Part { grid: table.grid.clone(), channels: table.channels.clone(), stored, provenance_json: json };
+        // size and hash are those of the whole file, which is not there yet
+        return Ok((record(&[]), Written::Part(part)));
+    }
     let input = EncodeInput {
         grid: &table.grid,
         channels: &table.channels,
@@ -148,7 +168,7 @@ fn encode_output(
         errors: if texels.as_ref().is_some_and(|t| t.held != "exact") { &[] } else { &table.errors },
         storage,
         options: &output.options,
-        provenance_json: &json,
+        label: Label { name: planned.name(), identity: &planned.identity, provenance_json: &json },
         cancel: source.cancel,
     };
     let bytes = encoder.encode(&input);
@@ -159,17 +179,7 @@ fn encode_output(
         bytes.splice(0..0, text.bytes());
     }
     bytes.extend(planned.asked.after.iter().flat_map(|text| text.bytes()));
-    let record = FileRecord {
-        file: file.to_owned(),
-        container: encoder.id().to_owned(),
-        bytes: bytes.len() as u64,
-        blake3: blake3::hash(&bytes).to_hex().to_string(),
-        encoding,
-        reconstruction,
-        texels,
-        as_read: source.probe.and_then(|p| p.measure_without_offset(&stored.values)),
-    };
-    Ok((record, bytes))
+    Ok((record(&bytes), Written::File(bytes)))
 }
 
 /// What every file of a table says of itself.

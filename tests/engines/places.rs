@@ -4,7 +4,7 @@
 //! or a channel of another place, they have other values.
 
 use crate::engines::support::{npy, numbers, picture, plan};
-use brdfbake::encode::{self, EncodeInput, FileOption, quantise_table};
+use brdfbake::encode::{self, EncodeInput, Label, FileOption, quantise_table};
 use brdfbake::grid::Table;
 use brdfbake::plan::PlannedTable;
 use brdfbake::recipe::ENGINES;
@@ -184,7 +184,7 @@ fn files_hold_a_texel_in_its_place() {
                 errors: &[],
                 storage,
                 options: &planned.outputs[0].options,
-                provenance_json: "{}",
+                label: Label::default(),
                 cancel: &brdfbake::cancel::Cancel::new(),
             };
             let bytes = planned.outputs[0].encoder.encode(&input).unwrap();

@@ -219,7 +219,7 @@ fn what_does_not_fit_is_refused() {
         errors: &[0.0; 64],
         options: &[],
         storage: Storage::Float,
-        provenance_json: "{}",
+        label: brdfbake::encode::Label::default(),
         cancel: &Cancel::new(),
     };
     let error = brdfbake::encode::encoder("merl").unwrap().encode(&input).unwrap_err().to_string();

@@ -34,7 +34,7 @@ impl Program<'_> {
         let axes = input.grid.axes();
         let indices = indices(axes, false)?;
         Ok(Program {
-            name: identifier(input.provenance_json),
+            name: name_of(input.label.name),
             arguments: axes.iter().map(|a| a.quantity.id).collect(),
             indices,
             lengths: axes.iter().map(|a| a.len).collect(),
@@ -47,7 +47,7 @@ impl Program<'_> {
 
     /// The provenance, then what the arguments and results are: line comments, in ASCII.
     pub(super) fn comment(&self, input: &EncodeInput<'_>) -> String {
-        let mut text = format!("brdfbake {}\n{}_lookup:", input.provenance_json, self.name);
+        let mut text = format!("brdfbake {}\n{}_lookup:", input.label.provenance_json, self.name);
         for axis in input.grid.axes() {
             let [lo, hi] = axis.domain;
             let _ = write!(text, "\n  {} in [{lo}, {hi}]: {}", axis.quantity.id, axis.quantity.meaning);
@@ -201,12 +201,6 @@ fn to_base(axis: &Axis, v: Expression) -> Result<Expression, EncodeError> {
         "f0_root4" => Ok(one().plus(v.clone().pow(2.0)).over(one().minus(v.pow(2.0)))),
         id => Err(EncodeError::Name { id: id.to_owned(), fault: "has no map to its base quantity in code" }),
     }
-}
-
-/// The name of the table as an identifier of every language.
-fn identifier(provenance: &str) -> String {
-    let json: serde_json::Value = serde_json::from_str(provenance).unwrap_or_default();
-    name_of(json["name"].as_str().unwrap_or_default())
 }
 
 /// A name as an identifier of every language.
