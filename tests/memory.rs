@@ -9,7 +9,7 @@ mod sample;
 
 use brdfbake::cancel::Cancel;
 use brdfbake::encode::read::read_bytes;
-use brdfbake::encode::{ENCODERS, EncodeInput, Label, Encoder, FileOption, Shape, Storage, quantise_table};
+use brdfbake::encode::{ENCODERS, EncodeInput, Encoder, FileOption, Label, Shape, Storage, quantise_table};
 use brdfbake::grid::{Axis, Grid, Quantity, Table, Texel, Warp};
 use brdfbake::pipeline::{PipelineError, Settings, Silent, memory, run};
 use brdfbake::plan::Plan;

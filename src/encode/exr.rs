@@ -18,7 +18,7 @@ use ::exr::image::write::WritableImage;
 use ::exr::math::Vec2;
 use ::exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Blocks, Compression, Encoding, FlatSamples, Image,
-    ImageAttributes, Layer, LayerAttributes, LineOrder, ReadChannels, ReadLayers, Text, f16,
+    ImageAttributes, Layer, LayerAttributes, LineOrder, Text, f16,
 };
 use std::io::Cursor;
 use std::ops::Range;

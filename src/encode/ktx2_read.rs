@@ -22,7 +22,6 @@ struct Raw {
     components: usize,
     /// Width, height, depth, layers; 0 where there is none.
     extent: [usize; 4],
-    zstd: bool,
     /// The value of the key `brdfbake`; empty if there is none.
     provenance: String,
     /// The bytes of the level, unpacked.
@@ -66,7 +65,7 @@ fn raw(bytes: &[u8], cancel: &Cancel) -> Result<Raw, ReadError> {
     let keys = part(bytes, word(bytes, 56)?.into(), word(bytes, 60)?.into())?;
     let text = value(keys, ATTRIBUTE.as_bytes()).filter(|t| t.len() <= MAX_TEXT).unwrap_or_default();
     let provenance = String::from_utf8_lossy(text.strip_suffix(&[0]).unwrap_or(text)).into_owned();
-    Ok(Raw { storage, components, extent, zstd: scheme == SCHEME_ZSTD, provenance, pixels })
+    Ok(Raw { storage, components, extent, provenance, pixels })
 }
 
 pub(super) fn read(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {

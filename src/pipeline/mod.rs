@@ -231,7 +231,9 @@ pub fn run(
     let mut findings = Vec::new();
     let mut doubts: Vec<Finding> = Vec::new();
     for (index, planned) in plan.tables.iter().enumerate() {
-        match pool.install(|| table::make(plan, planned, index, gathered.is_shared(planned), cancel, progress)) {
+        match pool
+            .install(|| table::make(plan, planned, index, gathered.is_shared(planned), cancel, progress))
+        {
             Ok(made) if findings.is_empty() => {
                 let doubtful = |f: &&Finding| settings.strict && f.result.is_doubt();
                 doubts.extend(made.warnings.iter().filter(doubtful).cloned());

@@ -3,8 +3,8 @@
 use super::advice::advice;
 use super::event::{ChoiceEntry, ReconstructionEntry};
 use super::fit;
-use super::manifest::tool;
 use super::gather::{Part, Written};
+use super::manifest::tool;
 use super::texels::{Chosen, Source};
 use super::{Event, Extremum, FileRecord, PipelineError, Progress, TableRecord, size};
 use crate::cancel::Cancel;
@@ -155,7 +155,12 @@ fn encode_output(
         as_read,
     };
     if shared && !encoder.is_bare() {
-        let part = Part { grid: table.grid.clone(), channels: table.channels.clone(), stored, provenance_json: json };
+        let part = Part {
+            grid: table.grid.clone(),
+            channels: table.channels.clone(),
+            stored,
+            provenance_json: json,
+        };
         // size and hash are those of the whole file, which is not there yet
         return Ok((record(&[]), Written::Part(part)));
     }

@@ -95,6 +95,11 @@ impl<'a> Binder<'a> {
             }
             self.report(&error, faults);
             if !self.repair(&error) {
+                if axes && matches!(error, BindError::Unknown { what: "model", .. } | BindError::Model { .. })
+                {
+                    // the axes are not looked at before there is a model
+                    check_axes_alone(self.asked, self.path, faults);
+                }
                 return None;
             }
         }

@@ -6,6 +6,7 @@ use super::identity::{self, Input};
 use super::output::{self, Output};
 use super::place::Path;
 use super::request::{Draft, TableRequest};
+use super::sizing::PROVISIONAL;
 use super::{LONGEST_REASON, TOLERANCE, bind, canonical, name, probe, sizing};
 use crate::grid::provenance::{SizeRecord, Waiver};
 use crate::models::Kind;
@@ -110,9 +111,24 @@ pub(super) fn resolve(
         return None;
     }
     let listed = asked.outputs.is_some();
-    let planned = fill(draft.request, bound?, tolerance, waivers?);
+    let (asked, bound) = open(draft.request, bound?);
+    let planned = fill(asked, bound, tolerance, waivers?);
     probe::look(path, listed, &planned, faults);
     (faults.len() == before).then_some(planned)
+}
+
+/// Where the size is to be found and no axis is given, all of the kind's own are searched: their lengths stand in, as those of
+/// axes that are given without one do.
+fn open(mut asked: TableRequest, bound: Bound) -> (TableRequest, Bound) {
+    let given = asked.request.axes.is_some();
+    let Some(size) = asked.size.as_mut().filter(|_| !given) else { return (asked, bound) };
+    let mut axes = bound.spec.grid.axes().to_vec();
+    size.axes = (0..axes.len()).collect();
+    axes.iter_mut().for_each(|axis| axis.len = PROVISIONAL);
+    asked.request.axes = Some(axes);
+    // shorter axes of the same maps bind where longer ones do
+    let bound = asked.request.bind().unwrap_or(bound);
+    (asked, bound)
 }
 
 /// Fills every default in.
@@ -124,18 +140,11 @@ fn fill(asked: TableRequest, bound: Bound, tolerance: Option<f64>, waivers: Vec<
     let least = (spec.kind.least_tolerance)(&setting);
     let tolerance = asked.tolerance.or(tolerance).unwrap_or(finest.max(least));
     let reconstruction = asked.reconstruction.unwrap_or(spec.kind.blended);
-    let all = asked.request.axes.is_none();
-    let mut size = asked.size.clone();
-    if let Some(size) = size.as_mut().filter(|_| all) {
-        // the kind's own axes: all of them
-        size.axes = (0..spec.grid.axes().len()).collect();
-    }
     let asked = TableRequest {
         request: request(spec),
         tolerance: Some(tolerance),
         outputs: Some(outputs.clone()),
         reconstruction: Some(reconstruction),
-        size,
         waivers,
         ..asked
     };

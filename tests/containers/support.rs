@@ -1,7 +1,7 @@
 //! Tables of one to four axes and their files.
 
 use crate::sample;
-use brdfbake::encode::{EncodeError, EncodeInput, Label, FileOption, Storage, encoder, quantise_table};
+use brdfbake::encode::{EncodeError, EncodeInput, FileOption, Label, Storage, encoder, quantise_table};
 use brdfbake::grid::{Axis, Channel, Grid, Quantity, Table, Texel};
 
 /// A table with axes of these lengths and `channels` channels in (0, 1).

@@ -4,7 +4,7 @@
 //! or a channel of another place, they have other values.
 
 use crate::engines::support::{npy, numbers, picture, plan};
-use brdfbake::encode::{self, EncodeInput, Label, FileOption, quantise_table};
+use brdfbake::encode::{self, EncodeInput, FileOption, Label, quantise_table};
 use brdfbake::grid::Table;
 use brdfbake::plan::PlannedTable;
 use brdfbake::recipe::ENGINES;

@@ -1,7 +1,7 @@
 //! Pictures, volumes and arrays as KTX2 and DDS, with options, and what they must hold.
 
 use crate::sample;
-use brdfbake::encode::{EncodeInput, Label, FileOption, Quantised, Shape, Storage, encoder, quantise_table};
+use brdfbake::encode::{EncodeInput, FileOption, Label, Quantised, Shape, Storage, encoder, quantise_table};
 use brdfbake::grid::{Axis, Channel, Grid, Quantity, Table, Texel};
 use std::path::Path;
 
@@ -98,7 +98,7 @@ fn write_one(
     let name = format!("{}.{container}", words.join("-"));
     let expected = serde_json::json!({"width": width, "height": height, "storage": storage.id(), "channels": planes,
         "depth": if shape.is_volume() { slices } else { 0 }, "layers": shape.layers().unwrap_or(0),
-        "components": components, "fill": shape.fill(components), "brdfbake": provenance_json});
+        "components": components, "fill": shape.fill(components), "brdfbake": json});
     std::fs::write(folder.join(&name), bytes).unwrap();
     std::fs::write(folder.join(format!("{name}.expected.json")), expected.to_string()).unwrap();
 }

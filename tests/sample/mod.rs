@@ -5,7 +5,7 @@
     reason = "each test file uses a part of it; a test may fail by panicking"
 )]
 
-use brdfbake::encode::{EncodeInput, Label, Encoder, Storage, quantise_table};
+use brdfbake::encode::{EncodeInput, Encoder, Label, Storage, quantise_table};
 use brdfbake::grid::provenance::{
     AxisRecord, Encoding, Integration, LawRecord, LawResult, RecipeId, Subject,
 };
