@@ -7,5 +7,4 @@ mod fuzz;
 mod names;
 mod presets;
 mod requests;
-#[path = "recipes/text.rs"]
 mod text;

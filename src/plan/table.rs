@@ -9,7 +9,6 @@ use super::request::{Draft, TableRequest};
 use super::sizing::PROVISIONAL;
 use super::{LONGEST_REASON, TOLERANCE, bind, canonical, name, probe, sizing};
 use crate::grid::provenance::{SizeRecord, Waiver};
-use crate::models::Kind;
 use crate::tables::spec::Request;
 use crate::tables::{Bound, Setting, Spec, TableInfo};
 use crate::verify;
@@ -117,14 +116,20 @@ pub(super) fn resolve(
     (faults.len() == before).then_some(planned)
 }
 
-/// Where the size is to be found and no axis is given, all of the kind's own are searched: their lengths stand in, as those of
-/// axes that are given without one do.
+/// Where the size is to be found, all axes are searched if none is given; until it is found one length stands in on every axis that
+/// is searched, however it was asked for.
 fn open(mut asked: TableRequest, bound: Bound) -> (TableRequest, Bound) {
     let given = asked.request.axes.is_some();
-    let Some(size) = asked.size.as_mut().filter(|_| !given) else { return (asked, bound) };
+    let Some(size) = asked.size.as_mut() else { return (asked, bound) };
     let mut axes = bound.spec.grid.axes().to_vec();
-    size.axes = (0..axes.len()).collect();
-    axes.iter_mut().for_each(|axis| axis.len = PROVISIONAL);
+    if !given {
+        size.axes = (0..axes.len()).collect();
+    }
+    for (i, axis) in axes.iter_mut().enumerate() {
+        if size.axes.contains(&i) {
+            axis.len = PROVISIONAL;
+        }
+    }
     asked.request.axes = Some(axes);
     // shorter axes of the same maps bind where longer ones do
     let bound = asked.request.bind().unwrap_or(bound);
@@ -176,21 +181,8 @@ fn request(spec: &Spec) -> Request {
 /// Parameters of the model, then of the kind, without those that an axis sweeps.
 fn params(spec: &Spec) -> Map<String, Json> {
     let swept = spec.swept();
-    let mut map = Map::new();
-    let model = spec.model.iter().map(|(info, params)| (info.params, params));
-    for (declared, params) in model.chain([(spec.kind.params, &spec.params)]) {
-        for param in declared.iter().filter(|p| !swept.contains(&p.id)) {
-            let value = match param.kind {
-                Kind::Number { .. } => Json::from(params.number(param.id) + 0.0),
-                Kind::Choice(_) => Json::from(params.choice(param.id)),
-                Kind::Rows { .. } => {
-                    params.rows(param.id).iter().map(|row| Json::from(row.as_slice())).collect()
-                }
-            };
-            map.insert(param.id.to_owned(), value);
-        }
-    }
-    map
+    let model = spec.model.iter().map(|(_, params)| params);
+    model.chain([&spec.params]).flat_map(|params| params.to_json(&swept)).collect()
 }
 
 /// A tolerance must be one that can be asked for.
