@@ -94,23 +94,20 @@ pub(super) fn resolve(
     faults: &mut Faults,
 ) -> Option<PlannedTable> {
     let before = faults.len();
-    let asked = &draft.request;
-    check_tolerance(asked.tolerance, path.key("tolerance"), faults);
+    check_tolerance(draft.request.tolerance, path.key("tolerance"), faults);
     output::check_list(&draft, path, faults);
-    sizing::check(asked, path, faults);
+    sizing::check(&draft.request, path, faults);
     let bound = bind::bind(&draft, path, faults);
-    let kind = if draft.holes.kind { None } else { crate::tables::find(&asked.request.kind) };
-    let waivers = kind.map(|kind| waivers(asked, path, kind, faults));
-    output::check_file(asked, path, faults);
-    if let Some(bound) = &bound {
-        output::check(asked, bound, path, faults);
-    }
-    let unread = draft.holes.name || draft.holes.outputs;
-    if faults.len() > before || unread {
+    let Draft { request: asked, holes } = draft;
+    let kind = if holes.kind { None } else { crate::tables::find(&asked.request.kind) };
+    let waivers = kind.map(|kind| waivers(&asked, path, kind, faults));
+    output::check_file(&asked, path, faults);
+    let (asked, bound) = open(asked, bound?);
+    output::check(&asked, &bound, path, faults);
+    if faults.len() > before || holes.name || holes.outputs {
         return None;
     }
     let listed = asked.outputs.is_some();
-    let (asked, bound) = open(draft.request, bound?);
     let planned = fill(asked, bound, tolerance, waivers?);
     probe::look(path, listed, &planned, faults);
     (faults.len() == before).then_some(planned)
