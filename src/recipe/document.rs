@@ -130,9 +130,24 @@ fn engine(id: &str, faults: &mut Faults) -> Vec<Draft> {
     drafts
 }
 
-/// What is left of a list, and the number of each entry in the file.
-fn left<T>(list: Vec<Option<T>>) -> (Vec<usize>, Vec<T>) {
-    list.into_iter().enumerate().filter_map(|(i, item)| Some((i, item?))).unzip()
+/// Entries of a list that could be read, each with its number in the file.
+type Numbered<T> = Vec<(usize, Option<T>)>;
+
+/// What is left of a list, and the number of each entry in the file; with how many were lost.
+fn left<T>(list: Numbered<T>) -> (Vec<usize>, Vec<T>, usize) {
+    let all = list.len();
+    let (numbers, entries): (Vec<usize>, Vec<T>) =
+        list.into_iter().filter_map(|(i, item)| Some((i, item?))).unzip();
+    let lost = all - numbers.len();
+    (numbers, entries, lost)
+}
+
+/// The number of a list's entry, by its path.
+fn number(path: &Path) -> usize {
+    match path.steps().last() {
+        Some(Step::Index(i)) => *i,
+        _ => 0,
+    }
 }
 
 fn entry(table: &DeTable<'_>, path: Path, faults: &mut Faults) -> (Draft, Origin) {
@@ -141,32 +156,28 @@ fn entry(table: &DeTable<'_>, path: Path, faults: &mut Faults) -> (Draft, Origin
     section.require("name", "name = \"ggx-dfg\"", faults);
     let (name, kind) = (section.text("name", faults), section.text("kind", faults));
     let mut size = read_size::read(&section, faults);
-    let axes = axes(&section, size.as_mut(), faults);
-    let outputs = outputs(&section, faults);
-    let whole = |list: Option<usize>, left: &[usize]| list.is_some_and(|n| n > left.len());
     let mut holes = Holes { name: name.is_none(), kind: kind.is_none(), ..Holes::default() };
     let mut lists = Vec::new();
-    let axes = axes.map(|axes| {
-        let count = axes.len();
-        let (numbers, axes) = left(axes);
-        holes.axes = whole(Some(count), &numbers);
-        lists.push(("axis", numbers));
+    let mut kept = |key: &'static str, numbers: Vec<usize>| lists.push((key, numbers));
+    let axes = axes(&section, size.as_mut(), faults).map(|list| {
+        let (numbers, axes, lost) = left(list);
+        holes.axes = lost > 0;
+        kept("axis", numbers);
         axes
     });
-    let outputs = outputs.map(|outputs| {
-        let count = outputs.len();
-        let (numbers, outputs) = left(outputs);
-        holes.outputs = whole(Some(count), &numbers);
-        lists.push(("outputs", numbers));
+    let outputs = outputs(&section, faults).map(|list| {
+        let (numbers, outputs, lost) = left(list);
+        holes.outputs = lost > 0;
+        kept("outputs", numbers);
         outputs
     });
-    let channels = channels(&section, faults).map(|channels| {
-        let (numbers, channels) = left(channels);
-        lists.push(("channels", numbers));
+    let channels = channels(&section, faults).map(|list| {
+        let (numbers, channels, _) = left(list);
+        kept("channels", numbers);
         channels
     });
-    let (numbers, waivers) = left(waivers(&section, faults));
-    lists.push(("waive", numbers));
+    let (numbers, waivers, _) = left(waivers(&section, faults));
+    kept("waive", numbers);
     let request = TableRequest {
         name: name.unwrap_or_default(),
         file: section.text("file", faults),
@@ -192,14 +203,14 @@ fn entry(table: &DeTable<'_>, path: Path, faults: &mut Faults) -> (Draft, Origin
 }
 
 /// The axes; those without a length are noted in `size`.
-fn axes(section: &Section<'_>, size: Option<&mut Sizing>, faults: &mut Faults) -> Option<Vec<Option<Axis>>> {
+fn axes(section: &Section<'_>, size: Option<&mut Sizing>, faults: &mut Faults) -> Option<Numbered<Axis>> {
     let tables = section.tables("axis", "[[table.axis]]", faults)?;
     let open = |table: &&DeTable<'_>| size.is_some() && !table.contains_key("length");
     let searched: Vec<usize> = (0..tables.len()).filter(|i| open(&tables[*i].1)).collect();
     let axes = tables
         .into_iter()
         .enumerate()
-        .map(|(i, (path, axis))| read_axis::read(axis, &path, searched.contains(&i), faults))
+        .map(|(i, (path, axis))| (number(&path), read_axis::read(axis, &path, searched.contains(&i), faults)))
         .collect();
     if let Some(size) = size {
         size.axes = searched;
@@ -226,7 +237,7 @@ fn params(section: &Section<'_>, faults: &mut Faults) -> Map<String, Json> {
     params
 }
 
-fn channels(section: &Section<'_>, faults: &mut Faults) -> Option<Vec<Option<String>>> {
+fn channels(section: &Section<'_>, faults: &mut Faults) -> Option<Numbered<String>> {
     let list = section.list("channels", "a list, such as [\"dfg.scale\", \"dfg.f82\"]", faults)?;
     let mut channels = Vec::new();
     // a list far too long is refused by its length alone
@@ -236,17 +247,17 @@ fn channels(section: &Section<'_>, faults: &mut Faults) -> Option<Vec<Option<Str
             let fault = wrong(&format!("channels[{i}]"), item.get_ref(), "a word in quotes");
             faults.value(section.path("channels").index(i), fault);
         }
-        channels.push(channel);
+        channels.push((i, channel));
     }
     Some(channels)
 }
 
-fn outputs(section: &Section<'_>, faults: &mut Faults) -> Option<Vec<Option<Output>>> {
+fn outputs(section: &Section<'_>, faults: &mut Faults) -> Option<Numbered<Output>> {
     let list = section.list("outputs", "a list, such as [\"exr:half\"]", faults)?;
     if list.is_empty() || list.len() > 64 {
         let allowed = "1 to 64".to_owned();
         faults.value(section.path("outputs"), Fault::Count { key: "outputs", got: list.len(), allowed });
-        return Some(vec![None]);
+        return Some(vec![(0, None)]);
     }
     let mut outputs = Vec::new();
     for (i, item) in list.iter().enumerate() {
@@ -254,18 +265,13 @@ fn outputs(section: &Section<'_>, faults: &mut Faults) -> Option<Vec<Option<Outp
             Some(text) => Output::parse(text),
             None => Err(wrong(&format!("outputs[{i}]"), item.get_ref(), "a string, such as \"exr:half\"")),
         };
-        outputs.push(match output {
-            Ok(output) => Some(output),
-            Err(fault) => {
-                faults.value(section.path("outputs").index(i), fault);
-                None
-            }
-        });
+        let output = output.map_err(|fault| faults.value(section.path("outputs").index(i), fault));
+        outputs.push((i, output.ok()));
     }
     Some(outputs)
 }
 
-fn waivers(section: &Section<'_>, faults: &mut Faults) -> Vec<Option<Waiver>> {
+fn waivers(section: &Section<'_>, faults: &mut Faults) -> Numbered<Waiver> {
     let expected = "a list, such as [{ law = \"energy\", reason = \"...\" }]";
     let mut waivers = Vec::new();
     for (path, table) in section.tables("waive", expected, faults).unwrap_or_default() {
@@ -273,7 +279,7 @@ fn waivers(section: &Section<'_>, faults: &mut Faults) -> Vec<Option<Waiver>> {
         waiver.require("law", "law = \"energy\"", faults);
         waiver.require("reason", "reason = \"why this table may break it\"", faults);
         let (law, reason) = (waiver.text("law", faults), waiver.text("reason", faults));
-        waivers.push(law.zip(reason).map(|(law, reason)| Waiver { law, reason }));
+        waivers.push((number(&path), law.zip(reason).map(|(law, reason)| Waiver { law, reason })));
     }
     waivers
 }
