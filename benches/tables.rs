@@ -30,7 +30,7 @@ fn main() {
         let texels = table.grid.len();
         println!(
             "| `{}` | {texels} | {:.1} ms | {:.0} | {:.1e} | {:.1e} |",
-            planned.name,
+            planned.name(),
             seconds * 1e3,
             table.total_evaluations() as f64 / texels as f64,
             table.largest_error().value,

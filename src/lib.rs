@@ -18,9 +18,10 @@
 //! | 6 | [`encode`] | one file a container; readers |
 //! | 7 | [`report`] | what a person reads: files and differences as text |
 //! | 6 | [`scene`] | what a glTF file needs; knows nothing of the rest |
-//! | 7 | [`recipe`] | preset files to a resolved plan |
-//! | 8 | [`pipeline`] | plan, bake, verify, encode, write |
-//! | 9 | `cli` | one file a verb (feature `cli`) |
+//! | 7 | [`plan`] | requests of any asker to one resolved job, and what its bytes depend on |
+//! | 8 | [`recipe`] | the text of recipes to requests, faults to lines; presets and engines |
+//! | 9 | [`pipeline`] | plan, bake, verify, encode, write |
+//! | 10 | `cli` | one file a verb (feature `cli`) |
 
 pub mod cancel;
 pub mod cite;
@@ -33,6 +34,7 @@ pub mod integrate;
 pub mod math;
 pub mod models;
 pub mod pipeline;
+pub mod plan;
 pub mod recipe;
 pub mod report;
 pub mod scene;

@@ -9,7 +9,7 @@
 use crate::sample::{channel, file, hard, provenance, table};
 use brdfbake::encode::read::{Claim, Sample, read_bytes};
 use brdfbake::encode::storage::{QuantiseError, STORAGES, Storage};
-use brdfbake::encode::{ENCODERS, EncodeError, EncodeInput, encoder, quantise_table};
+use brdfbake::encode::{ENCODERS, EncodeError, EncodeInput, Label, encoder, quantise_table};
 use brdfbake::grid::{Axis, Channel, Grid, Table, Texel};
 use proptest::prelude::*;
 
@@ -193,7 +193,7 @@ fn rows_run_down_and_slices_are_stacked() {
             errors: &[],
             storage: Storage::Half,
             options: &[],
-            provenance_json: "{}",
+            label: Label::default(),
             cancel: &brdfbake::cancel::Cancel::new(),
         };
         let image = read_bytes(&encoder("exr").unwrap().encode(&input).unwrap()).unwrap();
@@ -228,7 +228,7 @@ fn metadata_is_utf8_and_alone() {
             errors: &[],
             storage,
             options: &[],
-            provenance_json: text,
+            label: Label { provenance_json: text, ..Label::default() },
             cancel: &brdfbake::cancel::Cancel::new(),
         };
         let bytes = encoder.encode(&input).unwrap();
@@ -278,7 +278,7 @@ fn containers_refuse_what_they_cannot_hold() {
         errors: &[],
         storage: Storage::Unorm16,
         options: &[],
-        provenance_json: "{}",
+        label: Label::default(),
         cancel: &brdfbake::cancel::Cancel::new(),
     };
     let (png, exr) = (encoder("png").unwrap(), encoder("exr").unwrap());

@@ -5,7 +5,7 @@ mod shapes;
 
 use crate::sample::{file, grid, hard, provenance, table};
 use brdfbake::encode::read::read_file;
-use brdfbake::encode::{ENCODERS, Storage, encoder, quantise_table};
+use brdfbake::encode::{ENCODERS, EncodeInput, Label, Storage, encoder, quantise_table};
 
 /// Writes one file of each kind, with what it must hold, for `tests/foreign/read_back.py`.
 #[test]
@@ -47,7 +47,7 @@ fn write_for_foreign_readers() {
 fn write_set(folder: &std::path::Path) {
     let exr = encoder("exr").unwrap();
     let mut parts = serde_json::Map::new();
-    let mut files = Vec::new();
+    let mut tables = Vec::new();
     for (name, channels, storage) in
         [("split-sum", &["dfg.scale", "dfg.bias"][..], Storage::Half), ("albedo", &["e"], Storage::Float)]
     {
@@ -64,9 +64,24 @@ fn write_set(folder: &std::path::Path) {
             channels.iter().enumerate().map(plane).collect();
         let text = serde_json::to_string(&p).unwrap();
         parts.insert(name.to_owned(), serde_json::json!({ "channels": planes, "brdfbake": text }));
-        files.push(file(exr, &t, storage, &p));
+        tables.push((name, t, storage, values, text));
     }
-    std::fs::write(folder.join("set.exr"), exr.join(&files).unwrap()).unwrap();
+    let cancel = brdfbake::cancel::Cancel::new();
+    let inputs: Vec<EncodeInput<'_>> = tables
+        .iter()
+        .map(|(name, t, storage, values, text)| EncodeInput {
+            grid: &t.grid,
+            channels: &t.channels,
+            values,
+            blocks: &[],
+            errors: &[],
+            storage: *storage,
+            options: &[],
+            label: Label { name, provenance_json: text, ..Label::default() },
+            cancel: &cancel,
+        })
+        .collect();
+    std::fs::write(folder.join("set.exr"), exr.encode_together(&inputs).unwrap()).unwrap();
     let text = serde_json::Value::from(parts).to_string();
     std::fs::write(folder.join("set.exr.parts.json"), text).unwrap();
 }

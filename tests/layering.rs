@@ -17,9 +17,10 @@ const RANKS: &[(&str, u32)] = &[
     ("encode", 6),
     ("report", 7),
     ("scene", 6),
-    ("recipe", 7),
-    ("pipeline", 8),
-    ("cli", 9),
+    ("plan", 7),
+    ("recipe", 8),
+    ("pipeline", 9),
+    ("cli", 10),
 ];
 
 fn rank(room: &str) -> Option<u32> {

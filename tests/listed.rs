@@ -5,11 +5,12 @@
 //! `cargo test --release --test house listed -- --ignored --nocapture`.
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "test")]
 
-use brdfbake::encode::{self, Storage};
+use brdfbake::encode;
 use brdfbake::grid::{Axis, Grid};
 use brdfbake::models::MODELS;
 use brdfbake::pipeline::{self, PipelineError, Settings, Silent};
-use brdfbake::recipe::{ENGINES, PRESETS, Plan, PlannedTable, TableRequest};
+use brdfbake::plan::{Plan, PlannedTable, TableRequest};
+use brdfbake::recipe::{ENGINES, PRESETS};
 use brdfbake::tables::driver::{self, Options};
 use brdfbake::tables::spec::Request;
 use brdfbake::tables::{Bound, Mix, ModelUse, TABLES};
@@ -92,7 +93,7 @@ fn bake(planned: &PlannedTable) -> End {
     let cancel = Default::default();
     let options = Options {
         tolerance: planned.tolerance,
-        on_miss: planned.on_miss,
+        on_miss: planned.asked.on_miss,
         cancel: &cancel,
         progress: &|_| {},
     };
@@ -100,14 +101,14 @@ fn bake(planned: &PlannedTable) -> End {
         Ok(table) => table,
         Err(e) => return End::Failed(e.to_string()),
     };
-    let verified = match verify::check(&planned.bound, table, planned.tolerance, &planned.waivers) {
+    let verified = match verify::check(&planned.bound, table, planned.tolerance, &planned.asked.waivers) {
         Ok((verified, _)) => verified,
         Err(findings) => {
             return End::Failed(findings.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "));
         }
     };
     for output in &planned.outputs {
-        let storage = Storage::find(&output.storage).unwrap();
+        let storage = output.storage;
         if let Err(e) = encode::quantise_table(verified.table(), storage) {
             return End::Failed(format!("{output}: {e}"));
         }

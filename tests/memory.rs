@@ -9,10 +9,11 @@ mod sample;
 
 use brdfbake::cancel::Cancel;
 use brdfbake::encode::read::read_bytes;
-use brdfbake::encode::{ENCODERS, EncodeInput, Encoder, FileOption, Shape, Storage, quantise_table};
+use brdfbake::encode::{ENCODERS, EncodeInput, Encoder, FileOption, Label, Shape, Storage, quantise_table};
 use brdfbake::grid::{Axis, Grid, Quantity, Table, Texel, Warp};
 use brdfbake::pipeline::{PipelineError, Settings, Silent, memory, run};
-use brdfbake::recipe::{Plan, parse};
+use brdfbake::plan::Plan;
+use brdfbake::recipe::parse;
 use exr::image::write::WritableImage;
 use exr::prelude::{
     AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes,
@@ -250,7 +251,7 @@ fn measure_writing(encoder: &dyn Encoder, storage: Storage, options: &[FileOptio
         errors: &table.errors,
         storage,
         options,
-        provenance_json: "{\"name\": \"x\"}",
+        label: Label { name: "x", ..Label::default() },
         cancel: &Cancel::new(),
     };
     let what = format!("{}:{} {options:?}, {channels} channels", encoder.id(), storage.id());

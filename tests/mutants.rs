@@ -50,10 +50,11 @@ struct Mutant {
 const LEAST: usize = 40;
 
 /// Parts of the program that have mutants.
-const AREAS: [&str; 7] = [
+const AREAS: [&str; 8] = [
     "src/grid/",
     "src/verify/",
     "src/encode/",
+    "src/plan/",
     "src/recipe/",
     "src/pipeline/transaction/",
     "src/cli/",

@@ -45,7 +45,7 @@ fn sections() -> Vec<(&'static str, String)> {
         "| engine | version | file | takes the place of |",
         ENGINES.iter().flat_map(|e| {
             let plan = e.plan().unwrap();
-            let files: Vec<String> = plan.tables.iter().flat_map(brdfbake::pipeline::file_names).collect();
+            let files: Vec<String> = plan.tables.iter().flat_map(|t| t.files()).collect();
             let row = move |(i, file): (usize, String)| {
                 let (id, version) = (format!("`{}`", e.id), e.version.to_owned());
                 let [id, version] = if i == 0 { [id, version] } else { [String::new(), String::new()] };

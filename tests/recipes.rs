@@ -7,3 +7,4 @@ mod fuzz;
 mod names;
 mod presets;
 mod requests;
+mod text;

@@ -5,7 +5,8 @@ use brdfbake::cancel::Cancel;
 use brdfbake::encode::read;
 use brdfbake::grid::lookup;
 use brdfbake::pipeline::{PipelineError, Settings, Silent, run};
-use brdfbake::recipe::{Plan, parse};
+use brdfbake::plan::Plan;
+use brdfbake::recipe::parse;
 use std::path::Path;
 
 const FACTORED: &str = r#"
@@ -106,11 +107,11 @@ fn an_error_out_of_reach_is_refused_with_the_best_that_there_is() {
 fn axes_with_a_length_keep_it() {
     let half = FACTORED.replace("id = \"mu\"", "id = \"mu\"\nlength = 64");
     let plan = parse(&half, "auto.toml").unwrap();
-    assert_eq!(plan.tables[0].size.as_ref().unwrap().axes, [1]);
+    assert_eq!(plan.tables[0].asked.size.as_ref().unwrap().axes, [1]);
     let dir = tempfile::tempdir().unwrap();
     assert_eq!(bake(&plan, dir.path(), 2).unwrap().manifest.tables[0].size[0], 64);
     // the canonical form is itself a recipe, with the size still to be found
-    let canonical = &plan.tables[0].canonical;
+    let canonical = &plan.tables[0].canonical();
     assert!(
         canonical["axis"][1].get("length").is_none() && canonical["size"]["error"] == 1e-3,
         "{canonical}"

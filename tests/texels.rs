@@ -9,7 +9,8 @@ use brdfbake::grid::layout::Point;
 use brdfbake::grid::provenance::{ChoiceRecord, TexelRecord};
 use brdfbake::grid::{Axis, Grid, Quantity, Texel};
 use brdfbake::pipeline::{FileRecord, Settings, Silent, run};
-use brdfbake::recipe::{Plan, parse};
+use brdfbake::plan::Plan;
+use brdfbake::recipe::parse;
 use std::path::Path;
 
 fn line(len: usize, texel: Texel) -> Grid {
@@ -272,9 +273,9 @@ fn the_bytes_do_not_depend_on_the_threads_and_the_file_says_what_it_holds() {
     let text = brdfbake::report::inspect::inspect("t.exr", &image);
     assert!(text.contains("least-squares: texels are not samples"), "{text}");
     let exact = recipe("exact", 16, "endpoint", "");
-    assert_ne!(exact.tables[0].hash, plan.tables[0].hash);
-    assert!(exact.tables[0].canonical.get("texels").is_none());
-    assert_eq!(plan.tables[0].canonical["texels"], "least-squares");
+    assert_ne!(exact.tables[0].identity, plan.tables[0].identity);
+    assert!(exact.tables[0].canonical().get("texels").is_none());
+    assert_eq!(plan.tables[0].canonical()["texels"], "least-squares");
 }
 
 #[test]

@@ -5,7 +5,8 @@ use super::progress::{self, Format};
 use super::{Exit, Failure, engine, output, scene, suggest};
 use crate::cancel::Cancel;
 use crate::pipeline::{self, PipelineError, Settings};
-use crate::recipe::{self, LoadError, Plan};
+use crate::plan::Plan;
+use crate::recipe::{self, LoadError};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -74,7 +75,7 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     let settings = Settings { strict: args.strict, ..args.limits.settings(&args.out) };
     if args.dry_run {
         pipeline::check(&plan, &settings)?;
-        output::data(&pipeline::outputs(&plan).join("\n"))?;
+        output::data(&plan.files().join("\n"))?;
         return Ok(Exit::Done);
     }
     let reporter = progress::reporter(args.message_format, args.quiet, cancel);

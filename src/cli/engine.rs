@@ -2,7 +2,8 @@
 
 use super::{Failure, output};
 use crate::pipeline::Outcome;
-use crate::recipe::{self, ENGINES, Engine, Plan};
+use crate::plan::Plan;
+use crate::recipe::{self, ENGINES, Engine};
 
 /// The engine of this id and its plan.
 pub(super) fn plan(id: &str) -> Result<(&'static Engine, Plan), Failure> {

@@ -129,7 +129,7 @@ fn bound(args: &Args) -> Result<Bound, Failure> {
         return request.bind().map_err(Failure::input);
     };
     let mut tables = bake::plan(recipe)?.tables;
-    let names: Vec<String> = tables.iter().map(|t| t.name.clone()).collect();
+    let names: Vec<String> = tables.iter().map(|t| t.name().to_owned()).collect();
     let place = match &args.table {
         None if names.len() == 1 => Some(0),
         None => None,

@@ -9,7 +9,7 @@ use crate::encode::diff_files::{FileDiff, FolderDiff, PathDiff};
 use crate::encode::read;
 use crate::pipeline::golden::{Golden, GoldenError};
 use crate::pipeline::{self, Silent};
-use crate::recipe::Plan;
+use crate::plan::Plan;
 use crate::report;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

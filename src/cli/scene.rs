@@ -2,7 +2,8 @@
 
 use super::progress::Format;
 use super::{Exit, Failure, output};
-use crate::recipe::{self, Plan};
+use crate::plan::scene::ScenePlanError;
+use crate::plan::{self, Plan};
 use crate::scene::{self, Limits, Needs};
 use std::path::Path;
 
@@ -18,20 +19,11 @@ pub(super) fn plan(path: &Path, quiet: bool, format: Format) -> Result<Option<Pl
         Format::Human if quiet => {}
         Format::Human => human(&scene, &needs),
     }
-    if needs.needs.is_empty() {
-        return Ok(None);
-    }
-    let mut plans = Vec::new();
-    for need in &needs.needs {
-        let preset = recipe::preset(need.table).ok_or_else(|| {
-            Failure::new(
-                Exit::Unsupported,
-                format!("no preset bakes the {} tables that the scene needs", need.table),
-            )
-        })?;
-        plans.push(preset.plan().map_err(|e| Failure::new(Exit::Internal, e))?);
-    }
-    Plan::join("scene", plans).map(Some).map_err(|e| Failure::new(Exit::Internal, e))
+    plan::scene::plan(&needs).map_err(|e| {
+        let exit =
+            if matches!(e, ScenePlanError::Family { .. }) { Exit::Unsupported } else { Exit::Internal };
+        Failure::new(exit, e)
+    })
 }
 
 fn human(scene: &scene::Scene, needs: &Needs) {

@@ -6,7 +6,8 @@ use crate::cancel::Cancel;
 use crate::math::figures::exact;
 use crate::pipeline;
 use crate::pipeline::suggest::{self, Size, Suggestion, Want};
-use crate::recipe::{Engine, Plan};
+use crate::plan::Plan;
+use crate::recipe::Engine;
 
 /// Where an error must hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

@@ -112,7 +112,7 @@ impl Encoder for Dds {
         for n in [124, flags, height, width, pitch, depth, 1] {
             out.extend(n.to_le_bytes());
         }
-        out.extend(reserved(input.provenance_json));
+        out.extend(reserved(input.label.identity));
         for n in [32, FOURCC, u32::from_le_bytes(*b"DX10"), 0, 0, 0, 0, 0] {
             out.extend(n.to_le_bytes());
         }
@@ -130,13 +130,11 @@ impl Encoder for Dds {
     }
 }
 
-/// Eleven reserved words: name of the program, hash of the recipe, a zero.
-fn reserved(provenance: &str) -> [u8; 44] {
+/// Eleven reserved words: name of the program, identity of the table, a zero.
+fn reserved(identity: &str) -> [u8; 44] {
     let mut words = [0; 44];
     words[..8].copy_from_slice(ATTRIBUTE.as_bytes());
-    let json: serde_json::Value = serde_json::from_str(provenance).unwrap_or_default();
-    let hash = json["recipe"]["hash"].as_str().unwrap_or_default();
-    for (slot, pair) in words[8..40].iter_mut().zip(hash.as_bytes().chunks_exact(2)) {
+    for (slot, pair) in words[8..40].iter_mut().zip(identity.as_bytes().chunks_exact(2)) {
         let digits = std::str::from_utf8(pair).unwrap_or_default();
         *slot = u8::from_str_radix(digits, 16).unwrap_or(0);
     }

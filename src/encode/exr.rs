@@ -18,7 +18,7 @@ use ::exr::image::write::WritableImage;
 use ::exr::math::Vec2;
 use ::exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Blocks, Compression, Encoding, FlatSamples, Image,
-    ImageAttributes, Layer, LayerAttributes, LineOrder, ReadChannels, ReadLayers, Text, f16,
+    ImageAttributes, Layer, LayerAttributes, LineOrder, Text, f16,
 };
 use std::io::Cursor;
 use std::ops::Range;
@@ -66,44 +66,63 @@ impl Encoder for Exr {
         true
     }
 
-    fn join(&self, files: &[Vec<u8>]) -> Result<Vec<u8>, EncodeError> {
+    /// Parts named after their tables.
+    fn encode_together(&self, tables: &[EncodeInput<'_>]) -> Result<Vec<u8>, EncodeError> {
         let mut layers = Vec::new();
-        for file in files {
-            layers.extend(parts(file).map_err(library)?);
+        for table in tables {
+            layers.extend(parts(table, Some(table.label.name))?);
         }
         let size = layers.first().map_or(Vec2(1, 1), |l| l.size);
         if layers.iter().any(|l| l.size != size) {
             let fault = "the tables of one file are parts of one size";
             return Err(EncodeError::Axes { format: self.id(), fault });
         }
-        write(ImageAttributes::with_size(size), layers, &Cancel::new())
+        let Some(first) = tables.first() else {
+            return Err(EncodeError::Axes { format: self.id(), fault: "there is no table" });
+        };
+        write(ImageAttributes::with_size(size), layers, first.cancel)
     }
 
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
-        input.check(self)?;
-        let shape = input.shape();
-        let [width, rows, slices] = shape.extent();
-        let (parts, height) = if shape.has(FileOption::Parts) { (slices, rows) } else { (1, rows * slices) };
-        let tiled = shape.has(FileOption::Tiled);
-        let encoding = Encoding {
-            compression: Compression::ZIP16,
-            blocks: if tiled { Blocks::Tiles(Vec2(TILE, TILE)) } else { Blocks::ScanLines },
-            line_order: LineOrder::Increasing,
-        };
-        let layer = |part: usize| {
-            let mut attributes = LayerAttributes::default();
-            if parts > 1 {
-                attributes.layer_name = Some(text(&format!("slice_{part:03}")));
-            }
-            if part == 0 {
-                attributes.other.insert(text(ATTRIBUTE), AttributeValue::Text(text(input.provenance_json)));
-            }
-            let texels = part * width * height..(part + 1) * width * height;
-            Layer::new((width, height), attributes, encoding, channels(input, texels))
-        };
-        let layers: Vec<Layer<_>> = (0..parts).map(layer).collect();
-        write(ImageAttributes::with_size((width, height)), layers, input.cancel)
+        let layers = parts(input, None)?;
+        let size = layers.first().map_or(Vec2(1, 1), |l| l.size);
+        write(ImageAttributes::with_size(size), layers, input.cancel)
     }
+}
+
+/// The parts that a table takes, the provenance in the first: one, or one a slice. They are named after the table where others are
+/// in the file.
+fn parts(
+    input: &EncodeInput<'_>,
+    name: Option<&str>,
+) -> Result<Vec<Layer<AnyChannels<FlatSamples>>>, EncodeError> {
+    input.check(&Exr)?;
+    let shape = input.shape();
+    let [width, rows, slices] = shape.extent();
+    let (parts, height) = if shape.has(FileOption::Parts) { (slices, rows) } else { (1, rows * slices) };
+    let tiled = shape.has(FileOption::Tiled);
+    let encoding = Encoding {
+        compression: Compression::ZIP16,
+        blocks: if tiled { Blocks::Tiles(Vec2(TILE, TILE)) } else { Blocks::ScanLines },
+        line_order: LineOrder::Increasing,
+    };
+    let layer = |part: usize| {
+        let mut attributes = LayerAttributes::default();
+        let slice = (parts > 1).then(|| format!("slice_{part:03}"));
+        attributes.layer_name = match (name, slice) {
+            (None, slice) => slice,
+            (Some(name), None) => Some(name.to_owned()),
+            (Some(name), Some(slice)) => Some(format!("{name}.{slice}")),
+        }
+        .map(|name| text(&name));
+        if part == 0 {
+            let json = AttributeValue::Text(text(input.label.provenance_json));
+            attributes.other.insert(text(ATTRIBUTE), json);
+        }
+        let texels = part * width * height..(part + 1) * width * height;
+        Layer::new((width, height), attributes, encoding, channels(input, texels))
+    };
+    Ok((0..parts).map(layer).collect())
 }
 
 fn library(e: ::exr::error::Error) -> EncodeError {
@@ -127,41 +146,6 @@ fn write(
     let mut bytes = bytes.into_inner().into_inner();
     bytes.shrink_to_fit();
     Ok(bytes)
-}
-
-/// The parts of a file that this container wrote, named after its table.
-fn parts(file: &[u8]) -> ::exr::error::Result<Vec<Layer<AnyChannels<FlatSamples>>>> {
-    let image = ::exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .all_layers()
-        .all_attributes()
-        .non_parallel()
-        .from_buffered(Cursor::new(file))?;
-    let mut parts: Vec<Layer<_>> = image.layer_data.into_iter().collect();
-    let key = text(ATTRIBUTE);
-    // a file of one part has its attribute in either place
-    let shared = image.attributes.other.get(&key).cloned();
-    let own = parts.first().and_then(|p| p.attributes.other.get(&key).cloned());
-    let provenance = own.or(shared);
-    let json = match &provenance {
-        Some(AttributeValue::Text(json)) => String::from_utf8_lossy(json.as_slice()).into_owned(),
-        _ => String::new(),
-    };
-    let json: serde_json::Value = serde_json::from_str(&json).unwrap_or_default();
-    let table = json["name"].as_str().unwrap_or("table").to_owned();
-    for (i, part) in parts.iter_mut().enumerate() {
-        let slice = part.attributes.layer_name.take();
-        let name = slice
-            .map_or_else(|| table.clone(), |s| format!("{table}.{}", String::from_utf8_lossy(s.as_slice())));
-        part.attributes.layer_name = Some(text(&name));
-        part.attributes.other.clear();
-        if let Some(value) = provenance.as_ref().filter(|_| i == 0) {
-            part.attributes.other.insert(key.clone(), value.clone());
-        }
-    }
-    Ok(parts)
 }
 
 /// The channels of a run of texels, sorted by name.

@@ -58,7 +58,7 @@ impl Encoder for Hdr {
         let mut out = MAGIC.to_vec();
         out.extend(b"\nFORMAT=32-bit_rle_rgbe\n");
         // a line ends the value: JSON text as it is written here has none, a caller's might
-        let text = input.provenance_json.replace(['\n', '\r'], " ");
+        let text = input.label.provenance_json.replace(['\n', '\r'], " ");
         out.extend(format!("{ATTRIBUTE}={text}\n\n-Y {height} +X {width}\n").into_bytes());
         for row in pixels.chunks_exact(width * 4) {
             input.cancel.check()?;

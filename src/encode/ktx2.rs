@@ -24,10 +24,11 @@
 //! Source: KTX File Format Specification 2.0.4, sections 2 and 3. Zstandard is level 19; the bytes then depend on the
 //! version of its library, the values do not.
 
-use super::ktx2_read::{self, Raw};
+use super::ktx2_read;
 use super::{EncodeError, EncodeInput, Encoder, FileOption, Image, ReadError, Shape, Storage, dfd, texels};
 use crate::cancel::Cancel;
 use crate::grid::provenance::ATTRIBUTE;
+use std::borrow::Cow;
 
 /// The container. See the module.
 #[derive(Debug, Clone, Copy)]
@@ -90,30 +91,26 @@ impl Encoder for Ktx2 {
         true
     }
 
-    fn join(&self, files: &[Vec<u8>]) -> Result<Vec<u8>, EncodeError> {
-        join(files)
+    /// One array, table after table; the key `brdfbake` is then a list of their provenances.
+    fn encode_together(&self, tables: &[EncodeInput<'_>]) -> Result<Vec<u8>, EncodeError> {
+        let all: Vec<Parts<'_>> = tables.iter().map(Parts::new).collect::<Result<_, _>>()?;
+        let fault = "tables in one file become layers of an array: all of one size, storage and options, without a third axis";
+        let alike = |p: &Parts<'_>| all.first().is_some_and(|first| p.is_like(first)) && p.is_flat();
+        let Some(first) = all.first().filter(|_| all.iter().all(alike)) else {
+            return Err(EncodeError::Axes { format: self.id(), fault });
+        };
+        let texts: Vec<&str> = all.iter().map(|p| p.provenance.as_ref()).collect();
+        let together = Parts {
+            layers: all.len(),
+            provenance: format!("[{}]", texts.join(",")).into(),
+            pixels: all.iter().flat_map(|p| p.pixels.iter().copied()).collect(),
+            ..*first
+        };
+        together.write()
     }
 
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
-        input.check(self)?;
-        let shape = input.shape();
-        let components = self.components(&shape);
-        let pixels = texels::pack(input, components)?;
-        // RGBD is four bytes a pixel, whatever its components
-        let written = if input.storage == Storage::Rgbd { 4 } else { components };
-        let [width, height, slices] = shape.extent();
-        let parts = Parts {
-            storage: input.storage,
-            components: written,
-            size: [width, height],
-            depth: if shape.is_volume() { slices } else { 0 },
-            layers: shape.layers().unwrap_or(0),
-            zstd: shape.has(FileOption::Zstd),
-            provenance: input.provenance_json,
-            pixels,
-            cancel: input.cancel,
-        };
-        parts.write()
+        Parts::new(input)?.write()
     }
 }
 
@@ -127,12 +124,43 @@ struct Parts<'a> {
     depth: usize,
     layers: usize,
     zstd: bool,
-    provenance: &'a str,
+    provenance: Cow<'a, str>,
     pixels: Vec<u8>,
     cancel: &'a Cancel,
 }
 
-impl Parts<'_> {
+impl<'a> Parts<'a> {
+    fn new(input: &EncodeInput<'a>) -> Result<Parts<'a>, EncodeError> {
+        input.check(&Ktx2)?;
+        let shape = input.shape();
+        let components = Ktx2.components(&shape);
+        let pixels = texels::pack(input, components)?;
+        // RGBD is four bytes a pixel, whatever its components
+        let written = if input.storage == Storage::Rgbd { 4 } else { components };
+        let [width, height, slices] = shape.extent();
+        Ok(Parts {
+            storage: input.storage,
+            components: written,
+            size: [width, height],
+            depth: if shape.is_volume() { slices } else { 0 },
+            layers: shape.layers().unwrap_or(0),
+            zstd: shape.has(FileOption::Zstd),
+            provenance: input.label.provenance_json.into(),
+            pixels,
+            cancel: input.cancel,
+        })
+    }
+
+    fn is_like(&self, other: &Parts<'_>) -> bool {
+        let kind = |p: &Parts<'_>| (p.storage, p.components, p.size, p.zstd);
+        kind(self) == kind(other)
+    }
+
+    /// A picture with no slices.
+    fn is_flat(&self) -> bool {
+        self.depth == 0 && self.layers == 0
+    }
+
     fn write(&self) -> Result<Vec<u8>, EncodeError> {
         let descriptor = dfd::descriptor(self.storage, self.components);
         let keys = self.keys();
@@ -178,7 +206,7 @@ impl Parts<'_> {
         if self.zstd {
             entries.push(("KTXwriterScParams", "--zstd 19"));
         }
-        entries.push((ATTRIBUTE, self.provenance));
+        entries.push((ATTRIBUTE, self.provenance.as_ref()));
         let mut out = Vec::new();
         for (key, value) in entries {
             let length = u32::try_from(key.len() + value.len() + 2).unwrap_or(0);
@@ -188,31 +216,6 @@ impl Parts<'_> {
         }
         out
     }
-}
-
-/// One array of several files, layer after layer; the key `brdfbake` is then a list of their provenances.
-fn join(files: &[Vec<u8>]) -> Result<Vec<u8>, EncodeError> {
-    let library = |e: ReadError| EncodeError::Library { format: "ktx2", source: Box::new(e) };
-    let all: Vec<Raw> =
-        files.iter().map(|f| ktx2_read::raw(f, &Cancel::new()).map_err(library)).collect::<Result<_, _>>()?;
-    let fault = "tables in one file become layers of an array: all of one size, storage and options, without a third axis";
-    let alike = |r: &Raw| all.first().is_some_and(|a| r.is_like(a)) && r.is_flat();
-    let Some(first) = all.first().filter(|_| all.iter().all(alike)) else {
-        return Err(EncodeError::Axes { format: "ktx2", fault });
-    };
-    let texts: Vec<&str> = all.iter().map(|r| r.provenance.as_str()).collect();
-    let parts = Parts {
-        storage: first.storage,
-        components: first.components,
-        size: [first.extent[0], first.extent[1]],
-        depth: 0,
-        layers: all.len(),
-        zstd: first.zstd,
-        provenance: &format!("[{}]", texts.join(",")),
-        pixels: all.iter().flat_map(|r| r.pixels.iter().copied()).collect(),
-        cancel: &Cancel::new(),
-    };
-    parts.write()
 }
 
 /// `VkFormat` of a storage.

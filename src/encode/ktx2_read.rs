@@ -17,31 +17,18 @@ const FORMAT: &str = "ktx2";
 const MAX_TEXT: usize = 1 << 24;
 
 /// A file taken apart.
-pub(super) struct Raw {
-    pub(super) storage: Storage,
-    pub(super) components: usize,
+struct Raw {
+    storage: Storage,
+    components: usize,
     /// Width, height, depth, layers; 0 where there is none.
-    pub(super) extent: [usize; 4],
-    pub(super) zstd: bool,
+    extent: [usize; 4],
     /// The value of the key `brdfbake`; empty if there is none.
-    pub(super) provenance: String,
+    provenance: String,
     /// The bytes of the level, unpacked.
-    pub(super) pixels: Vec<u8>,
+    pixels: Vec<u8>,
 }
 
-impl Raw {
-    pub(super) fn is_like(&self, other: &Raw) -> bool {
-        let kind = |r: &Raw| (r.storage, r.components, r.extent, r.zstd);
-        kind(self) == kind(other)
-    }
-
-    /// A picture with no slices.
-    pub(super) fn is_flat(&self) -> bool {
-        self.extent[2..] == [0, 0]
-    }
-}
-
-pub(super) fn raw(bytes: &[u8], cancel: &Cancel) -> Result<Raw, ReadError> {
+fn raw(bytes: &[u8], cancel: &Cancel) -> Result<Raw, ReadError> {
     let format = word(bytes, 12)?;
     let (storage, components) =
         storage(format).ok_or_else(|| fault(format!("VkFormat {format} is not supported")))?;
@@ -78,7 +65,7 @@ pub(super) fn raw(bytes: &[u8], cancel: &Cancel) -> Result<Raw, ReadError> {
     let keys = part(bytes, word(bytes, 56)?.into(), word(bytes, 60)?.into())?;
     let text = value(keys, ATTRIBUTE.as_bytes()).filter(|t| t.len() <= MAX_TEXT).unwrap_or_default();
     let provenance = String::from_utf8_lossy(text.strip_suffix(&[0]).unwrap_or(text)).into_owned();
-    Ok(Raw { storage, components, extent, zstd: scheme == SCHEME_ZSTD, provenance, pixels })
+    Ok(Raw { storage, components, extent, provenance, pixels })
 }
 
 pub(super) fn read(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {

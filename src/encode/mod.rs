@@ -15,7 +15,7 @@
 //! # Example
 //! ```
 //! use brdfbake::cancel::Cancel;
-//! use brdfbake::encode::{EncodeInput, Storage, encoder, quantise_table, read};
+//! use brdfbake::encode::{EncodeInput, Label, Storage, encoder, quantise_table, read};
 //! use brdfbake::grid::{Axis, Channel, Grid, Quantity, Table, Texel};
 //!
 //! let mu = Quantity::find("mu").ok_or("no such quantity")?;
@@ -35,7 +35,7 @@
 //!     errors: &[],
 //!     storage: Storage::Half,
 //!     options: &[],
-//!     provenance_json: "{}",
+//!     label: Label::default(),
 //!     cancel: &Cancel::new(),
 //! })?;
 //! assert_eq!(read::read_bytes(&bytes)?.channels[0].values, rounded.values);
@@ -139,12 +139,17 @@ pub trait Encoder: Debug + Send + Sync {
     fn joins(&self) -> bool {
         self.is_bare()
     }
-    /// One file of several that it wrote, each with one table.
+    /// One file of several tables, in their order.
     ///
     /// # Errors
-    /// [`EncodeError`] if they do not go together. Without [`Encoder::joins`] the result is no file of this kind.
-    fn join(&self, files: &[Vec<u8>]) -> Result<Vec<u8>, EncodeError> {
-        Ok(files.concat())
+    /// [`EncodeError`] if they do not go together, or as [`Encoder::encode`] for one of them. Without [`Encoder::joins`] the result
+    /// is no file of this kind.
+    fn encode_together(&self, tables: &[EncodeInput<'_>]) -> Result<Vec<u8>, EncodeError> {
+        let mut file = Vec::new();
+        for table in tables {
+            file.extend(self.encode(table)?);
+        }
+        Ok(file)
     }
     /// How its files begin; empty if they cannot be told apart or are not read.
     fn magic(&self) -> &'static [&'static [u8]] {
@@ -205,6 +210,24 @@ pub const fn texel_size(storage: Storage, components: usize) -> usize {
     texels::size(storage, components)
 }
 
+/// What a file says of its table, in containers that have a place for it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Label<'a> {
+    /// Name of the table: that of a part, of an array, of a function.
+    pub name: &'a str,
+    /// Its identity in hex: what is left of the provenance where there is room for a hash alone.
+    pub identity: &'a str,
+    /// The provenance as JSON text.
+    pub provenance_json: &'a str,
+}
+
+/// A table that nothing is known of.
+impl Default for Label<'_> {
+    fn default() -> Self {
+        Label { name: "", identity: "", provenance_json: "{}" }
+    }
+}
+
 /// What goes into a file.
 #[derive(Debug, Clone, Copy)]
 pub struct EncodeInput<'a> {
@@ -222,8 +245,8 @@ pub struct EncodeInput<'a> {
     pub storage: Storage,
     /// Options of the output.
     pub options: &'a [FileOption],
-    /// The provenance as JSON text.
-    pub provenance_json: &'a str,
+    /// What the file says of its table.
+    pub label: Label<'a>,
     /// Set from outside to stop.
     pub cancel: &'a Cancel,
 }

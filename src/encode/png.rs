@@ -89,7 +89,9 @@ impl Encoder for Png {
         if !input.shape().has(FileOption::Untagged) {
             encoder.set_source_gamma(::png::ScaledFloat::new(1.0));
         }
-        encoder.add_itxt_chunk(ATTRIBUTE.to_owned(), input.provenance_json.to_owned()).map_err(library)?;
+        encoder
+            .add_itxt_chunk(ATTRIBUTE.to_owned(), input.label.provenance_json.to_owned())
+            .map_err(library)?;
         let mut writer = encoder.write_header().map_err(library)?;
         let mut pixels = texels::pack(input, components)?;
         if wide {

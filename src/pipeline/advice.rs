@@ -2,7 +2,7 @@
 
 use crate::grid::Axis;
 use crate::grid::provenance::{Encoding, Reconstruction};
-use crate::recipe::PlannedTable;
+use crate::plan::PlannedTable;
 use crate::tables::Setting;
 
 /// Times the tolerance, or the rounding if that is more, beyond which a reader's error is far above.
@@ -37,7 +37,7 @@ pub(super) fn advice(planned: &PlannedTable, encoding: &Encoding, read: &Reconst
             axes.join(", ")
         ));
     }
-    if planned.size.is_none() {
+    if planned.asked.size.is_none() {
         all.push("`size = \"auto\"` in place of lengths, or with `warps = \"search\"`, finds the texels that it takes".to_owned());
     }
     all

@@ -3,7 +3,7 @@
 use super::{Outcome, Recovery};
 use crate::grid::provenance::{ChoiceRecord, LawRecord, SizeRecord};
 use crate::grid::table::Extreme;
-use crate::recipe::Plan;
+use crate::plan::{Plan, PlannedTable};
 use crate::verify::Finding;
 use serde::Serialize;
 use std::path::Path;
@@ -222,8 +222,8 @@ impl From<&ChoiceRecord> for ChoiceEntry {
 }
 
 /// Texels along each axis; 0 where the length is to be found.
-fn lengths(table: &crate::recipe::PlannedTable) -> Vec<usize> {
-    let searched = |i: &usize| table.size.as_ref().is_some_and(|s| s.axes.contains(i));
+fn lengths(table: &PlannedTable) -> Vec<usize> {
+    let searched = |i: &usize| table.asked.size.as_ref().is_some_and(|s| s.axes.contains(i));
     let axes = table.bound.spec.grid.axes().iter().enumerate();
     axes.map(|(i, a)| if searched(&i) { 0 } else { a.len }).collect()
 }
@@ -234,13 +234,13 @@ impl<'a> Event<'a> {
             .tables
             .iter()
             .map(|t| PlanEntry {
-                name: &t.name,
+                name: t.name(),
                 kind: t.bound.spec.kind.id,
                 model: t.bound.spec.model.as_ref().map(|(m, _)| m.id),
                 size: lengths(t),
                 tolerance: t.tolerance,
-                files: super::file_names(t),
-                hash: &t.hash,
+                files: t.files(),
+                hash: &t.identity,
                 memory: super::memory::table(t),
             })
             .collect();

@@ -6,7 +6,7 @@ use crate::grid::fit::{Objective, Samples, places, places_count};
 use crate::grid::layout::Point;
 use crate::grid::{Grid, Table};
 use crate::integrate::{MAX_CHANNELS, Sums};
-use crate::recipe::PlannedTable;
+use crate::plan::PlannedTable;
 use crate::tables::Bound;
 use crate::verify::reconstruction::in_practical_domain;
 use rayon::prelude::*;
@@ -110,7 +110,7 @@ pub(super) fn fit(
     let choices: &[(usize, usize)] = if quick { &PER_CELL_QUICK } else { &PER_CELL };
     let per_cell = choices.iter().find(|(k, most)| places_count(grid, *k) <= *most);
     let (per_cell, _) = *per_cell.ok_or_else(|| PipelineError::Fit {
-        table: planned.name.clone(),
+        table: planned.name().to_owned(),
         points: places_count(grid, 2),
         limit: LIMIT,
     })?;

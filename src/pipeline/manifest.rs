@@ -2,11 +2,8 @@
 
 use crate::grid::Provenance;
 use crate::grid::provenance::{Encoding, Reconstruction, SCHEMA, TexelRecord};
-use crate::recipe::Plan;
+use crate::plan::Plan;
 use serde::{Deserialize, Serialize};
-
-/// File name of the manifest.
-pub const MANIFEST: &str = "manifest.json";
 
 /// The manifest of an output folder. No clock, host or path: the same recipe gives the same bytes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -63,7 +60,7 @@ impl Manifest {
     pub(super) fn new(plan: &Plan, tables: Vec<TableRecord>) -> Manifest {
         let mut hasher = blake3::Hasher::new();
         for table in &plan.tables {
-            hasher.update(table.hash.as_bytes());
+            hasher.update(table.identity.as_bytes());
         }
         Manifest {
             schema: SCHEMA,

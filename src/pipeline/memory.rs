@@ -6,10 +6,10 @@
 //! ([`Encoder::most_memory`]). `tests/memory.rs` measures bakes against it.
 
 use super::PipelineError;
-use crate::encode::{self, Encoder, FileOption, Shape, Storage};
+use crate::encode::{Encoder, FileOption, Shape, Storage};
 use crate::grid::Grid;
 use crate::integrate::MAX_CHANNELS;
-use crate::recipe::{Plan, PlannedTable};
+use crate::plan::{Plan, PlannedTable};
 
 /// What a bake may take if nothing else is said, where the machine has as much: the same plans are refused on every
 /// machine that is larger.
@@ -56,7 +56,7 @@ pub(super) fn check(plan: &Plan, limit: Option<u64>) -> Result<(), PipelineError
     if needed <= limit {
         return Ok(());
     }
-    Err(PipelineError::Memory { table: largest.name.clone(), needed, limit })
+    Err(PipelineError::Memory { table: largest.name().to_owned(), needed, limit })
 }
 
 /// Most bytes that a plan takes.
@@ -68,13 +68,19 @@ pub fn plan(plan: &Plan) -> u64 {
 /// Parts of files that several tables share: they are held until the last one is there, and joined.
 fn shared(plan: &Plan) -> u64 {
     let named = |t: &&PlannedTable| {
-        t.file.is_some() && plan.tables.iter().filter(|other| other.file == t.file).count() > 1
+        t.asked.file.is_some()
+            && plan.tables.iter().filter(|other| other.asked.file == t.asked.file).count() > 1
     };
-    let file = |t: &PlannedTable| outputs(t, &grid(t)).map(|(e, s)| bytes(e.most_bytes(&s))).sum::<u64>();
-    plan.tables.iter().filter(named).map(|t| file(t).saturating_mul(JOINED)).fold(0, u64::saturating_add)
+    let part = |t: &PlannedTable| {
+        let (grid, channels) = (grid(t), t.bound.spec.layout.channels.len());
+        let file: u64 = outputs(t, &grid).map(|(e, s)| bytes(e.most_bytes(&s))).sum();
+        file.saturating_mul(JOINED).saturating_add(bytes(grid.len() * channels).saturating_mul(8))
+    };
+    plan.tables.iter().filter(named).map(part).fold(0, u64::saturating_add)
 }
 
-/// Times that a part is held while files are joined: as it was written, unpacked, and written again.
+/// Times that the bytes of a part are held while a file is put together, besides its numbers: packed, behind those of others, compressed,
+/// and in the file; a block storage has its blocks besides.
 const JOINED: u64 = 5;
 
 /// Most bytes that a table takes.
@@ -86,8 +92,8 @@ pub fn table(planned: &PlannedTable) -> u64 {
     // values and errors, and the number of evaluations
     let table = texels.saturating_mul(16 * channels + 4);
     let values = texels.saturating_mul(8 * channels);
-    let fitted = if planned.texels.are_exact() { [0; 2] } else { fit(&grid, channels) };
-    let candidates = if planned.texels.are_exact() { 1 } else { 4 };
+    let fitted = if planned.asked.texels.are_exact() { [0; 2] } else { fit(&grid, channels) };
+    let candidates = if planned.asked.texels.are_exact() { 1 } else { 4 };
     let mut files = 0_u64;
     let mut writing = 0_u64;
     for (encoder, shape) in outputs(planned, &grid) {
@@ -109,7 +115,9 @@ pub fn table(planned: &PlannedTable) -> u64 {
 /// The grid of a table; where its size is searched for, the largest that can be tried.
 fn grid(planned: &PlannedTable) -> Grid {
     let grid = &planned.bound.spec.grid;
-    let Some(size) = planned.size.as_ref().filter(|_| planned.found.is_none()) else { return grid.clone() };
+    let Some(size) = planned.asked.size.as_ref().filter(|_| planned.found.is_none()) else {
+        return grid.clone();
+    };
     let mut axes = grid.axes().to_vec();
     for i in &size.axes {
         if let Some(axis) = axes.get_mut(*i) {
@@ -126,22 +134,7 @@ fn outputs<'a>(
     grid: &'a Grid,
 ) -> impl Iterator<Item = (&'static dyn Encoder, Shape<'a>)> {
     let channels = planned.bound.spec.layout.channels.len();
-    planned.outputs.iter().filter_map(move |o| {
-        let encoder = encode::encoder(&o.container)?;
-        let shape = Shape { grid, channels, storage: Storage::find(&o.storage)?, options: options(o) };
-        Some((encoder, shape))
-    })
-}
-
-/// The options of an output that change what it takes.
-fn options(output: &crate::recipe::Output) -> &'static [FileOption] {
-    let has = |option: FileOption| output.options.iter().any(|o| o == option.id());
-    match (has(FileOption::Rgba), has(FileOption::Zstd)) {
-        (true, true) => &[FileOption::Rgba, FileOption::Zstd],
-        (true, false) => &[FileOption::Rgba],
-        (false, true) => &[FileOption::Zstd],
-        (false, false) => &[],
-    }
+    planned.outputs.iter().map(move |o| (o.encoder, o.shape(grid, channels)))
 }
 
 /// Blocks of texels: positions, blocks as they are found, and what they decode to, by channel and by texel.

@@ -18,14 +18,15 @@ mod texels;
 mod threads;
 pub mod transaction;
 
+pub use crate::plan::MANIFEST;
 pub use event::{Event, Extremum, Progress, Silent};
-pub use manifest::{FileRecord, MANIFEST, Manifest, TableRecord};
+pub use manifest::{FileRecord, Manifest, TableRecord};
 pub use threads::{MOST_THREADS, pool};
 pub use transaction::Recovery;
 
 use crate::cancel::{Cancel, Cancelled};
-use crate::encode::{self, EncodeError, RangeFault};
-use crate::recipe::{Plan, PlannedTable};
+use crate::encode::{EncodeError, RangeFault};
+use crate::plan::Plan;
 use crate::tables::driver::BakeError;
 use crate::verify::Finding;
 use std::path::PathBuf;
@@ -230,11 +231,13 @@ pub fn run(
     let mut findings = Vec::new();
     let mut doubts: Vec<Finding> = Vec::new();
     for (index, planned) in plan.tables.iter().enumerate() {
-        match pool.install(|| table::make(plan, planned, index, cancel, progress)) {
+        match pool
+            .install(|| table::make(plan, planned, index, gathered.is_shared(planned), cancel, progress))
+        {
             Ok(made) if findings.is_empty() => {
                 let doubtful = |f: &&Finding| settings.strict && f.result.is_doubt();
                 doubts.extend(made.warnings.iter().filter(doubtful).cloned());
-                gathered.take(index, made.files, &mut files)?;
+                gathered.take(index, made.files, cancel, &mut files)?;
                 tables.push(made.record);
             }
             Ok(_) => {}
@@ -262,7 +265,7 @@ pub fn run(
 /// # Errors
 /// [`PipelineError::Files`] and [`PipelineError::Memory`].
 pub fn check(plan: &Plan, settings: &Settings) -> Result<(), PipelineError> {
-    transaction::check(&settings.out, &outputs(plan))?;
+    transaction::check(&settings.out, &plan.files())?;
     memory::check(plan, settings.memory)
 }
 
@@ -276,45 +279,9 @@ fn begin<'a>(
     let (folder, timeout) = (settings.out.as_path(), settings.lock_timeout);
     let told = || progress.event(&Event::Waiting { folder, seconds: timeout.as_secs_f64() });
     let waiting = Waiting { timeout, told: &told };
-    let (files, recovered) = Transaction::begin(folder, &outputs(plan), cancel, &waiting)?;
+    let (files, recovered) = Transaction::begin(folder, &plan.files(), cancel, &waiting)?;
     if let Some(recovery) = recovered {
         progress.event(&Event::Recovered { folder, recovery });
     }
     Ok(files)
-}
-
-/// Names of every file that a plan writes, in order, relative to the output folder. One that tables share by its name is there once; one
-/// that is there twice is a conflict, which [`check`] finds.
-#[must_use]
-pub fn outputs(plan: &Plan) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for table in &plan.tables {
-        let shared = |name: &String| table.file.is_some() && names.contains(name);
-        let own: Vec<String> = file_names(table).into_iter().filter(|name| !shared(name)).collect();
-        names.extend(own);
-    }
-    names.push(MANIFEST.to_owned());
-    names
-}
-
-/// File names of one table, one an output: `name.exr`, or `name.float.exr` where a container is used twice; or the one
-/// that the recipe gives.
-#[must_use]
-pub fn file_names(planned: &PlannedTable) -> Vec<String> {
-    if let Some(file) = &planned.file {
-        return vec![file.clone()];
-    }
-    let outputs = &planned.outputs;
-    outputs
-        .iter()
-        .map(|o| {
-            let extension = encode::encoder(&o.container).map_or("bin", |e| e.extension());
-            let twice = outputs.iter().filter(|other| other.container == o.container).count() > 1;
-            if twice {
-                format!("{}.{}.{extension}", planned.name, o.storage)
-            } else {
-                format!("{}.{extension}", planned.name)
-            }
-        })
-        .collect()
 }

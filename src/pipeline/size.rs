@@ -16,7 +16,7 @@ use crate::grid::layout::{Point, combination};
 use crate::grid::provenance::SizeRecord;
 use crate::grid::{Axis, Grid, Table, Texel, Warp, lookup};
 use crate::integrate::{MAX_CHANNELS, Sums};
-use crate::recipe::{PlannedTable, Sizing};
+use crate::plan::{PlannedTable, Sizing};
 use crate::tables::Bound;
 use crate::verify::reconstruction::{Probe, in_practical_domain};
 use rayon::prelude::*;
@@ -67,7 +67,7 @@ pub(super) fn resolve(
     }
     let trials = search.trials.load(Ordering::Relaxed);
     let found = best.ok_or_else(|| PipelineError::Size {
-        table: planned.name.clone(),
+        table: planned.name().to_owned(),
         asked: sizing.error,
         longest: sizing.longest,
         reached: *search.least.lock().unwrap_or_else(std::sync::PoisonError::into_inner),
@@ -105,7 +105,7 @@ impl<'a> Search<'a> {
         sizing: &'a Sizing,
         cancel: &'a Cancel,
     ) -> Result<Search<'a>, PipelineError> {
-        let storages = planned.outputs.iter().filter_map(|o| Storage::find(&o.storage)).collect();
+        let storages = planned.outputs.iter().map(|o| o.storage).collect();
         Ok(Search {
             planned,
             sizing,
@@ -137,7 +137,7 @@ impl<'a> Search<'a> {
     }
 
     fn fault(&self, error: &dyn std::fmt::Display) -> PipelineError {
-        PipelineError::SizeGrid { table: self.planned.name.clone(), message: error.to_string() }
+        PipelineError::SizeGrid { table: self.planned.name().to_owned(), message: error.to_string() }
     }
 
     fn cancelled(&self) -> Result<(), PipelineError> {
@@ -162,7 +162,7 @@ impl<'a> Search<'a> {
 
     /// The error of exact texels from which what is asked for may still be reached.
     fn hope(&self) -> f64 {
-        let fitted = if self.planned.texels.are_exact() { 1.0 } else { FITTED };
+        let fitted = if self.planned.asked.texels.are_exact() { 1.0 } else { FITTED };
         fitted * self.sizing.error
     }
 
@@ -231,7 +231,7 @@ impl<'a> Search<'a> {
             evaluations: vec![0; values.len() / n.max(1)],
             values,
         };
-        let texels = self.planned.texels;
+        let texels = self.planned.asked.texels;
         let fitted = match texels.are_exact() {
             true => None,
             false => Some(fit::fit(self.planned, &bound, &table, self.tolerance, quick, self.cancel)?),
@@ -287,7 +287,7 @@ impl<'a> Search<'a> {
             axes.iter_mut().zip(&lens).for_each(|(axis, len)| axis.len = *len);
             let grid = self.grid(axes)?;
             let mut error = self.trial(grid.clone(), true)?;
-            if error <= self.sizing.error && !self.planned.texels.are_exact() {
+            if error <= self.sizing.error && !self.planned.asked.texels.are_exact() {
                 error = self.trial(grid.clone(), false)?;
             }
             if error <= self.sizing.error {

@@ -8,11 +8,12 @@
 use super::{PipelineError, Silent, size, table};
 use crate::cancel::Cancel;
 use crate::encode::code::reader::{self, Decode};
-use crate::encode::{self, Storage};
+use crate::encode::{self, FileOption, Storage};
 use crate::grid::provenance::Reconstruction;
 use crate::grid::{Axis, Direction, Grid, Texel, Warp};
 use crate::models::Params;
-use crate::recipe::{self, Engine, Output, Plan, PlannedTable, Reader, Sizing, TableRequest};
+use crate::plan::{Output, Plan, PlannedTable, Sizing, TableRequest};
+use crate::recipe::{self, Engine, Reader};
 use crate::tables::ModelUse;
 use crate::tables::default_axes::LEAST_ROUGHNESS;
 use crate::tables::spec::Request;
@@ -22,7 +23,10 @@ use serde::Serialize;
 const SHARE: f64 = 0.02;
 
 /// What is taken where the engine's own storage is too coarse.
-const FINER: &str = "ktx2";
+fn finer(channels: usize) -> Output {
+    let half = Output::new(&encode::ktx2::Ktx2, Storage::Half);
+    if channels == 3 { half.with(FileOption::Rgba) } else { half }
+}
 
 /// What is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,7 +104,8 @@ fn one(
     want: Want,
     cancel: &Cancel,
 ) -> Result<Suggestion, PipelineError> {
-    let mut result = Suggestion { table: planned.name.clone(), own: None, found: None, notes: Vec::new() };
+    let mut result =
+        Suggestion { table: planned.name().to_owned(), own: None, found: None, notes: Vec::new() };
     let language = match (engine.reader, planned.bound.spec.kind.id) {
         (Reader::Fixed(why), _) => {
             result.notes.push(format!("its reader cannot be told another axis: {why}"));
@@ -112,18 +117,15 @@ fn one(
         }
         (Reader::Shader(language), _) => language,
     };
-    let own = table::make(plan, planned, index, cancel, &Silent)?;
+    let own = table::make(plan, planned, index, false, cancel, &Silent)?;
     result.own = measured(&own, planned);
     let search = Search { planned, want, language, cancel };
-    let output = planned.outputs.first().cloned().unwrap_or_else(|| Output::new(FINER, "half"));
+    let output = planned.outputs.first().cloned().unwrap_or_else(Output::preset);
     let mut least = f64::INFINITY;
     result.found = search.best(&output, &mut least)?;
-    let float = |o: &Output| ["half", "float", "double"].contains(&o.storage.as_str());
-    if result.found.is_none() && !float(&output) {
-        let mut finer = Output::new(FINER, "half");
-        if planned.bound.spec.layout.channels.len() == 3 {
-            finer.options.push("rgba".to_owned());
-        }
+    let float = matches!(output.storage, Storage::Half | Storage::Float | Storage::Double);
+    if result.found.is_none() && !float {
+        let finer = finer(planned.bound.spec.layout.channels.len());
         result.notes.push(format!("as {output}, {}: stored as {finer} instead", reached(least)));
         result.found = search.best(&finer, &mut least)?;
     }
@@ -191,8 +193,8 @@ impl Search<'_> {
             longest: self.want.longest,
             axes: vec![0, 1],
         };
-        let mut request = TableRequest::new(self.planned.name.clone(), request(self.planned, channels));
-        request.outputs = vec![output.clone()];
+        let mut request = TableRequest::new(self.planned.name().to_owned(), request(self.planned, channels));
+        request.outputs = Some(vec![output.clone()]);
         request.tolerance = Some((SHARE * self.want.error).max(1e-12));
         let open = TableRequest { size: Some(sizing.clone()), ..request.clone() };
         let plan = Plan::from_requests("suggested", vec![open]).map_err(|e| self.fault(&e))?;
@@ -204,10 +206,10 @@ impl Search<'_> {
 
     /// Bakes the text of a recipe; none if it reads worse than asked for after all.
     fn bake(&self, request: &TableRequest, decode: Decode) -> Result<Option<Found>, PipelineError> {
-        let text = recipe::text("suggested", request);
+        let text = recipe::text("suggested", std::slice::from_ref(request));
         let plan = recipe::parse(&text, "suggested.toml").map_err(|e| self.fault(&e))?;
         let planned = plan.tables.first().ok_or_else(|| self.fault(&"no table"))?;
-        let made = table::make(&plan, planned, 0, self.cancel, &Silent)?;
+        let made = table::make(&plan, planned, 0, false, self.cancel, &Silent)?;
         let Some(size) = measured(&made, planned) else { return Ok(None) };
         let reached = if self.want.practical { size.practical.unwrap_or(size.whole) } else { size.whole };
         if reached[0] > self.want.error {
@@ -215,13 +217,13 @@ impl Search<'_> {
         }
         let spec = &planned.bound.spec;
         let channels: Vec<&str> = spec.layout.ids().collect();
-        let lines = reader::lines(&planned.name, &spec.grid, &channels, decode, self.language)
+        let lines = reader::lines(planned.name(), &spec.grid, &channels, decode, self.language)
             .map_err(|e| self.fault(&e))?;
         Ok(Some(Found { size, recipe: text, language: self.language, lines }))
     }
 
     fn fault(&self, error: &dyn std::fmt::Display) -> PipelineError {
-        PipelineError::SizeGrid { table: self.planned.name.clone(), message: error.to_string() }
+        PipelineError::SizeGrid { table: self.planned.name().to_owned(), message: error.to_string() }
     }
 }
 
@@ -234,7 +236,7 @@ fn candidates(planned: &PlannedTable, output: &Output) -> Vec<(Vec<String>, Deco
         ["dfg.fc", "dfg.total", ..] => Decode::Multiscatter,
         _ => return all,
     };
-    if Storage::find(&output.storage).is_some_and(|s| !s.is_bounded()) && output.storage != "rgbd" {
+    if !output.storage.is_bounded() && output.storage != Storage::Rgbd {
         let mut factored = own;
         factored.splice(0..2, ["dfg.loss", "dfg.rest"].map(str::to_owned));
         all.push((factored, decode));
@@ -289,12 +291,11 @@ fn measured(made: &table::Made, planned: &PlannedTable) -> Option<Size> {
     let read: &Reconstruction = record.as_read.as_ref().or(record.reconstruction.as_ref())?;
     let output = planned.outputs.first()?;
     let grid: &Grid = &planned.bound.spec.grid;
-    let storage = Storage::find(&output.storage)?;
     let components = planned.bound.spec.layout.channels.len() + record.encoding.fill.len();
     Some(Size {
         texels: made.record.size.clone(),
         output: output.to_string(),
-        bytes: grid.len() * encode::texel_size(storage, components),
+        bytes: grid.len() * encode::texel_size(output.storage, components),
         file_bytes: record.bytes,
         whole: [read.whole.largest.value, read.whole.mean],
         practical: read.practical.as_ref().map(|p| [p.largest.value, p.mean]),

@@ -3,14 +3,15 @@
 use super::advice::advice;
 use super::event::{ChoiceEntry, ReconstructionEntry};
 use super::fit;
+use super::gather::{Part, Written};
 use super::manifest::tool;
 use super::texels::{Chosen, Source};
 use super::{Event, Extremum, FileRecord, PipelineError, Progress, TableRecord, size};
 use crate::cancel::Cancel;
-use crate::encode::{self, EncodeInput, Shape, Storage, Unstored};
+use crate::encode::{EncodeInput, Label, Unstored};
 use crate::grid::Provenance;
 use crate::grid::provenance::{AxisRecord, Encoding, Integration, RecipeId, SCHEMA, SizeRecord, Subject};
-use crate::recipe::{Output, Plan, PlannedTable};
+use crate::plan::{Output, Plan, PlannedTable};
 use crate::tables::driver::{self, Options};
 use crate::tables::{Bound, Spec, source};
 use crate::verify::{self, Finding, Verified, reconstruction::Probe};
@@ -24,19 +25,21 @@ pub(super) struct Made {
     pub(super) record: TableRecord,
     /// What was found that does not stop a bake.
     pub(super) warnings: Vec<Finding>,
-    pub(super) files: Vec<(String, Vec<u8>)>,
+    pub(super) files: Vec<(String, Written)>,
 }
 
+/// Makes a table. `shared`: other tables of the plan are in its file, which is written when all are there.
 pub(super) fn make(
     plan: &Plan,
     planned: &PlannedTable,
     index: usize,
+    shared: bool,
     cancel: &Cancel,
     progress: &dyn Progress,
 ) -> Result<Made, PipelineError> {
-    let name = planned.name.as_str();
+    let name = planned.name();
     let start = Instant::now();
-    let sized = match &planned.size {
+    let sized = match &planned.asked.size {
         Some(sizing) => Some(size::resolve(planned, sizing, cancel)?),
         None => None,
     };
@@ -48,12 +51,14 @@ pub(super) fn make(
     progress.event(&Event::TableStarted { table: name, index, texels: spec.grid.len() });
     let start = Instant::now();
     let tick = |done| progress.event(&Event::TableProgress { table: name, index, done });
-    let options = Options { tolerance: planned.tolerance, on_miss: planned.on_miss, cancel, progress: &tick };
+    let options =
+        Options { tolerance: planned.tolerance, on_miss: planned.asked.on_miss, cancel, progress: &tick };
     let table = driver::bake(&planned.bound, options)
         .map_err(|error| PipelineError::Bake { table: name.to_owned(), error })?;
     let bake_seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let checked = verify::check_until(cancel, &planned.bound, table, planned.tolerance, &planned.waivers)?;
+    let checked =
+        verify::check_until(cancel, &planned.bound, table, planned.tolerance, &planned.asked.waivers)?;
     let (verified, warnings) = checked.map_err(PipelineError::Laws)?;
     for finding in &warnings {
         progress.event(&Event::Finding { table: name, finding });
@@ -68,9 +73,9 @@ pub(super) fn make(
         warnings,
         files: Vec::new(),
     };
-    let names = super::file_names(planned);
+    let names = planned.files();
     // the laws are those of the integrals; what is fitted to them is judged by how it reads
-    let fitted = match planned.texels.are_exact() {
+    let fitted = match planned.asked.texels.are_exact() {
         true => None,
         false => Some(fit::fit(planned, &planned.bound, verified.table(), planned.tolerance, false, cancel)?),
     };
@@ -84,7 +89,7 @@ pub(super) fn make(
             probe: probe.as_ref(),
             cancel,
         };
-        let (record, bytes) = encode_output(planned, output, &source, &provenance, &file)?;
+        let (record, bytes) = encode_output(planned, output, &source, &provenance, &file, shared)?;
         made.record.files.push(record);
         made.files.push((file, bytes));
     }
@@ -96,7 +101,7 @@ pub(super) fn make(
 fn size_found<'a>(found: &'a PlannedTable, record: &'a SizeRecord, index: usize, seconds: f64) -> Event<'a> {
     let axes = found.bound.spec.grid.axes();
     Event::SizeFound {
-        table: &found.name,
+        table: found.name(),
         index,
         size: axes.iter().map(|a| a.len).collect(),
         coordinates: axes.iter().map(|a| a.coordinate_formula()).collect(),
@@ -111,26 +116,20 @@ fn encode_output(
     source: &Source<'_>,
     provenance: &Provenance,
     file: &str,
-) -> Result<(FileRecord, Vec<u8>), PipelineError> {
+    shared: bool,
+) -> Result<(FileRecord, Written), PipelineError> {
     let table = source.table;
-    let (name, label) = (planned.name.clone(), output.to_string());
-    let unknown = || PipelineError::Encode {
-        table: planned.name.clone(),
-        output: output.to_string(),
-        error: encode::EncodeError::Unknown { id: output.to_string() },
-    };
-    let encoder = encode::encoder(&output.container).ok_or_else(unknown)?;
-    let storage = Storage::find(&output.storage).ok_or_else(unknown)?;
+    let (name, label) = (planned.name().to_owned(), output.to_string());
+    let (encoder, storage) = (output.encoder, output.storage);
     let Chosen { stored, reconstruction, texels } =
-        source.choose(planned.texels, storage).map_err(|error| match error {
+        source.choose(planned.asked.texels, storage).map_err(|error| match error {
             Unstored::Cancelled(stopped) => stopped.into(),
             Unstored::Range(error) => {
                 PipelineError::Range { table: name.clone(), output: label.clone(), error }
             }
         })?;
     source.cancel.check()?;
-    let options = output.file_options();
-    let shape = Shape { grid: &table.grid, channels: table.channels.len(), storage, options: &options };
+    let shape = output.shape(&table.grid, table.channels.len());
     let encoding = Encoding {
         storage: storage.id().to_owned(),
         largest_error: stored.largest_error.value,
@@ -144,6 +143,27 @@ fn encode_output(
     };
     let json = serde_json::to_string(&provenance)
         .map_err(|e| PipelineError::Metadata { table: name.clone(), message: e.to_string() })?;
+    let as_read = source.probe.and_then(|p| p.measure_without_offset(&stored.values));
+    let record = |bytes: &[u8]| FileRecord {
+        file: file.to_owned(),
+        container: encoder.id().to_owned(),
+        bytes: bytes.len() as u64,
+        blake3: blake3::hash(bytes).to_hex().to_string(),
+        encoding,
+        reconstruction,
+        texels: texels.clone(),
+        as_read,
+    };
+    if shared && !encoder.is_bare() {
+        let part = Part {
+            grid: table.grid.clone(),
+            channels: table.channels.clone(),
+            stored,
+            provenance_json: json,
+        };
+        // size and hash are those of the whole file, which is not there yet
+        return Ok((record(&[]), Written::Part(part)));
+    }
     let input = EncodeInput {
         grid: &table.grid,
         channels: &table.channels,
@@ -152,30 +172,19 @@ fn encode_output(
         // the estimates are those of the integrals
         errors: if texels.as_ref().is_some_and(|t| t.held != "exact") { &[] } else { &table.errors },
         storage,
-        options: &options,
-        provenance_json: &json,
+        options: &output.options,
+        label: Label { name: planned.name(), identity: &planned.identity, provenance_json: &json },
         cancel: source.cancel,
     };
     let bytes = encoder.encode(&input);
     // a library that is stopped tells of a fault of its own
     source.cancel.check()?;
     let mut bytes = bytes.map_err(|error| PipelineError::Encode { table: name, output: label, error })?;
-    let [before, after] = &planned.around;
-    if let Some(text) = before {
+    if let Some(text) = &planned.asked.before {
         bytes.splice(0..0, text.bytes());
     }
-    bytes.extend(after.iter().flat_map(|text| text.bytes()));
-    let record = FileRecord {
-        file: file.to_owned(),
-        container: output.container.clone(),
-        bytes: bytes.len() as u64,
-        blake3: blake3::hash(&bytes).to_hex().to_string(),
-        encoding,
-        reconstruction,
-        texels,
-        as_read: source.probe.and_then(|p| p.measure_without_offset(&stored.values)),
-    };
-    Ok((record, bytes))
+    bytes.extend(planned.asked.after.iter().flat_map(|text| text.bytes()));
+    Ok((record(&bytes), Written::File(bytes)))
 }
 
 /// What every file of a table says of itself.
@@ -185,8 +194,8 @@ fn provenance(plan: &Plan, planned: &PlannedTable, verified: &Verified) -> Prove
     Provenance {
         schema: SCHEMA,
         tool: tool(),
-        recipe: RecipeId { name: plan.name.clone(), hash: planned.hash.clone() },
-        name: planned.name.clone(),
+        recipe: RecipeId { name: plan.name.clone(), hash: planned.identity.clone() },
+        name: planned.name().to_owned(),
         table: Subject {
             id: spec.kind.id.to_owned(),
             title: format!("{}, {}", spec.kind.title, spec.layout.title()),
@@ -248,7 +257,7 @@ fn finished<'a>(
         })
     });
     Event::TableFinished {
-        table: &planned.name,
+        table: planned.name(),
         index,
         tolerance: planned.tolerance,
         integration: Extremum::from(&integration.largest_error),

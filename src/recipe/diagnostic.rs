@@ -1,7 +1,9 @@
 //! Faults with their places in the file, and how they are shown: line, column, the line itself with a caret, a remedy.
 
-use super::fault::{Fault, Faults, show};
 use super::span::Spans;
+use crate::plan::Place;
+use crate::plan::fault::{Fault, show};
+use crate::plan::faults::Faults;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use serde::Serialize;
 use std::fmt;
@@ -84,8 +86,8 @@ pub(super) fn syntax(source: &str, file: &str, errors: &[toml::de::Error]) -> Re
 
 /// Faults with their places looked up.
 pub(super) fn locate(source: &str, file: &str, spans: &Spans, faults: Faults) -> RecipeError {
-    let list =
-        faults.list.into_iter().map(|(place, fault)| (spans.find(&place), place.path, fault)).collect();
+    let one = |(place, fault): (Place, Fault)| (spans.find(&place), place.to_string(), fault);
+    let list = faults.list.into_iter().map(one).collect();
     collect(source, file, list, faults.dropped)
 }
 

@@ -1,15 +1,20 @@
-//! The file as it is written: every key read and of the right type, nothing looked up yet but quantities.
+//! The file as it is written: every key read and of the right type, into requests. What they mean is judged by the plan.
+//!
+//! What cannot be read is a fault here, and a hole in the request. Lists are then shorter in the request than in the file, so
+//! [`Origins`] leads from a place in the requests back to the one in the file.
 
-use super::fault::{Fault, Faults};
-use super::outputs::Output;
-use super::read_axis;
-use super::section::{Section, unknown_word, wrong};
-use super::sizing::{self, Sizing};
-use super::{MAX_TABLES, formats};
+use super::section::{Section, wrong};
+use super::{read_axis, read_size};
 use crate::grid::Axis;
 use crate::grid::fit::Texels;
 use crate::grid::provenance::Waiver;
+use crate::plan::fault::{Fault, show, unknown_word};
+use crate::plan::faults::Faults;
+use crate::plan::request::{Draft, Holes};
+use crate::plan::resolve::check_count;
+use crate::plan::{MAX_TABLES, Output, Part, Path, Place, Sizing, Step, TableRequest};
 use crate::tables::driver::OnMiss;
+use crate::tables::spec::Request;
 use serde_json::{Map, Value as Json};
 use toml::de::DeTable;
 
@@ -34,46 +39,58 @@ const TABLE: &[&str] = &[
     "axis",
 ];
 
-/// A recipe before it is resolved. What could not be read is none, and a fault has been reported for it.
+/// A recipe before it is resolved. What could not be read is none, or a hole, and a fault has been reported for it.
 #[derive(Debug, Default)]
 pub(super) struct Document {
     pub(super) name: Option<String>,
     pub(super) tolerance: Option<f64>,
-    pub(super) tables: Vec<Entry>,
+    pub(super) drafts: Vec<Draft>,
+    pub(super) origins: Origins,
 }
 
-/// A table of a recipe before it is resolved.
+/// Where the requests come from, one each.
 #[derive(Debug, Default)]
-pub(super) struct Entry {
-    /// `table[0]`.
-    pub(super) path: String,
-    pub(super) name: Option<String>,
-    /// Name of its one file, instead of the one made from `name`.
-    pub(super) file: Option<String>,
-    /// Text before and behind the numbers of that file.
-    pub(super) around: [Option<String>; 2],
-    pub(super) kind: Option<String>,
-    pub(super) layout: Option<String>,
-    /// A channel that could not be read is none.
-    pub(super) channels: Option<Vec<Option<String>>>,
-    pub(super) model: Option<String>,
-    pub(super) params: Map<String, Json>,
-    pub(super) tolerance: Option<f64>,
-    pub(super) outputs: Option<Vec<Option<Output>>>,
-    pub(super) on_miss: OnMiss,
-    /// None: as the kind is read.
-    pub(super) reconstruction: Option<bool>,
-    /// Axes without a length are searched.
-    pub(super) size: Option<Sizing>,
-    pub(super) texels: Texels,
-    pub(super) waivers: Vec<Option<Waiver>>,
-    /// None: the kind's own. An axis that could not be read is none.
-    pub(super) axes: Option<Vec<Option<Axis>>>,
+pub(super) struct Origins(Vec<Origin>);
+
+#[derive(Debug)]
+enum Origin {
+    /// A table of this file.
+    Table {
+        path: Path,
+        /// For each list that may have lost entries: the number in the file of those that are left.
+        lists: Vec<(&'static str, Vec<usize>)>,
+    },
+    /// A table of the engine that the file names: whatever is wrong with it is wrong with that key.
+    Engine,
+}
+
+impl Origins {
+    /// The place in the file of a place in the requests.
+    pub(super) fn locate(&self, place: Place) -> Place {
+        let [Step::Key(key), Step::Index(table), rest @ ..] = place.path.steps() else { return place };
+        let Some(origin) = self.0.get(*table).filter(|_| key == "table") else { return place };
+        let Origin::Table { path, lists } = origin else {
+            return Place { path: Path::root().key("engine"), part: Part::Value };
+        };
+        let mut path = path.clone();
+        let mut list: Option<&Vec<usize>> = None;
+        for (depth, step) in rest.iter().enumerate() {
+            let step = match (step, list.take()) {
+                (Step::Index(i), Some(numbers)) => Step::Index(numbers.get(*i).copied().unwrap_or(*i)),
+                (step, _) => step.clone(),
+            };
+            if let (0, Step::Key(key)) = (depth, &step) {
+                list = lists.iter().find(|(name, _)| name == key).map(|(_, numbers)| numbers);
+            }
+            path = path.then(step);
+        }
+        Place { path, part: place.part }
+    }
 }
 
 /// Reads the keys of a file.
 pub(super) fn read(root: &DeTable<'_>, faults: &mut Faults) -> Document {
-    let section = Section::new(root, "", "the recipe", ROOT, faults);
+    let section = Section::new(root, &Path::root(), "the recipe", ROOT, faults);
     section.require("name", "name = \"my-tables\"", faults);
     if section.get("engine").is_none() {
         section.require("table", "[[table]]", faults);
@@ -81,80 +98,121 @@ pub(super) fn read(root: &DeTable<'_>, faults: &mut Faults) -> Document {
     let mut document = Document {
         name: section.text("name", faults),
         tolerance: section.number("tolerance", faults),
-        tables: Vec::new(),
+        ..Document::default()
     };
     if let Some(id) = section.text("engine", faults) {
-        document.tables = engine(&id, faults);
+        document.drafts = engine(&id, faults);
+        document.origins.0.extend(document.drafts.iter().map(|_| Origin::Engine));
     }
     let Some(tables) = section.tables("table", "[[table]]", faults) else { return document };
-    if tables.is_empty() || tables.len() > MAX_TABLES {
-        let allowed = format!("1 to {MAX_TABLES}");
-        faults.key("table", Fault::Count { key: "table", got: tables.len(), allowed });
-    }
+    check_count(tables.len(), faults);
     for (path, table) in tables.into_iter().take(MAX_TABLES) {
-        document.tables.push(entry(table, path, faults));
+        let (draft, origin) = entry(table, path, faults);
+        document.drafts.push(draft);
+        document.origins.0.push(origin);
     }
     document
 }
 
 /// The tables of an engine; what is wrong with them is wrong with the key `engine`.
-fn engine(id: &str, faults: &mut Faults) -> Vec<Entry> {
+fn engine(id: &str, faults: &mut Faults) -> Vec<Draft> {
+    let path = Path::root().key("engine");
     let Some(found) = super::engine(id) else {
-        faults.value("engine", unknown_word("engine", id, super::ENGINES.iter().map(|e| e.id)));
+        faults.value(path, unknown_word("engine", id, super::ENGINES.iter().map(|e| e.id)));
         return Vec::new();
     };
     let (root, _) = DeTable::parse_recoverable(found.recipe);
     let mut inner = Faults::default();
-    let tables = read(root.get_ref(), &mut inner).tables;
+    let drafts = read(root.get_ref(), &mut inner).drafts;
     for (_, fault) in inner.list {
-        faults.value("engine", fault);
+        faults.value(path.clone(), fault);
     }
-    tables.into_iter().map(|entry| Entry { path: "engine".to_owned(), ..entry }).collect()
+    drafts
 }
 
-fn entry(table: &DeTable<'_>, path: String, faults: &mut Faults) -> Entry {
+/// Entries of a list that could be read, each with its number in the file.
+type Numbered<T> = Vec<(usize, Option<T>)>;
+
+/// What is left of a list, and the number of each entry in the file; with how many were lost.
+fn left<T>(list: Numbered<T>) -> (Vec<usize>, Vec<T>, usize) {
+    let all = list.len();
+    let (numbers, entries): (Vec<usize>, Vec<T>) =
+        list.into_iter().filter_map(|(i, item)| Some((i, item?))).unzip();
+    let lost = all - numbers.len();
+    (numbers, entries, lost)
+}
+
+/// The number of a list's entry, by its path.
+fn number(path: &Path) -> usize {
+    match path.steps().last() {
+        Some(Step::Index(i)) => *i,
+        _ => 0,
+    }
+}
+
+fn entry(table: &DeTable<'_>, path: Path, faults: &mut Faults) -> (Draft, Origin) {
     let section = Section::new(table, &path, "[[table]]", TABLE, faults);
     section.require("kind", "kind = \"dfg\"", faults);
     section.require("name", "name = \"ggx-dfg\"", faults);
-    let on_miss = section.word("on-miss", &[("fail", OnMiss::Fail), ("report", OnMiss::Report)], faults);
-    let mut size = sizing::read(&section, faults);
-    let axes = axes(&section, size.as_mut(), faults);
-    let texels = section.word("texels", &Texels::ALL.map(|t| (t.id(), t)), faults).unwrap_or_default();
-    Entry {
-        name: section.text("name", faults),
+    let (name, kind) = (section.text("name", faults), section.text("kind", faults));
+    let mut size = read_size::read(&section, faults);
+    let mut holes = Holes { name: name.is_none(), kind: kind.is_none(), ..Holes::default() };
+    let mut lists = Vec::new();
+    let mut kept = |key: &'static str, numbers: Vec<usize>| lists.push((key, numbers));
+    let axes = axes(&section, size.as_mut(), faults).map(|list| {
+        let (numbers, axes, lost) = left(list);
+        holes.axes = lost > 0;
+        kept("axis", numbers);
+        axes
+    });
+    let outputs = outputs(&section, faults).map(|list| {
+        let (numbers, outputs, lost) = left(list);
+        holes.outputs = lost > 0;
+        kept("outputs", numbers);
+        outputs
+    });
+    let channels = channels(&section, faults).map(|list| {
+        let (numbers, channels, _) = left(list);
+        kept("channels", numbers);
+        channels
+    });
+    let (numbers, waivers, _) = left(waivers(&section, faults));
+    kept("waive", numbers);
+    let request = TableRequest {
+        name: name.unwrap_or_default(),
         file: section.text("file", faults),
-        around: ["before", "after"].map(|key| section.long_text(key, faults)),
-        kind: section.text("kind", faults),
-        layout: section.text("layout", faults),
-        channels: channels(&section, faults),
-        model: section.text("model", faults),
-        params: params(&section, faults),
+        before: section.long_text("before", faults),
+        after: section.long_text("after", faults),
+        request: Request {
+            kind: kind.unwrap_or_default(),
+            layout: section.text("layout", faults),
+            channels,
+            model: section.text("model", faults),
+            params: params(&section, faults),
+            axes,
+        },
         tolerance: section.number("tolerance", faults),
-        outputs: outputs(&section, faults),
-        on_miss: on_miss.unwrap_or_default(),
+        outputs,
+        on_miss: section.word("on-miss", &OnMiss::ALL.map(|m| (m.id(), m)), faults).unwrap_or_default(),
         reconstruction: section.word("reconstruction", &[("on", true), ("off", false)], faults),
-        waivers: waivers(&section, faults),
+        texels: section.word("texels", &Texels::ALL.map(|t| (t.id(), t)), faults).unwrap_or_default(),
+        waivers,
         size,
-        texels,
-        axes,
-        path,
-    }
+    };
+    (Draft { request, holes }, Origin::Table { path, lists })
 }
 
 /// The axes; those without a length are noted in `size`.
-fn axes(section: &Section<'_>, size: Option<&mut Sizing>, faults: &mut Faults) -> Option<Vec<Option<Axis>>> {
+fn axes(section: &Section<'_>, size: Option<&mut Sizing>, faults: &mut Faults) -> Option<Numbered<Axis>> {
     let tables = section.tables("axis", "[[table.axis]]", faults)?;
     let open = |table: &&DeTable<'_>| size.is_some() && !table.contains_key("length");
     let searched: Vec<usize> = (0..tables.len()).filter(|i| open(&tables[*i].1)).collect();
     let axes = tables
         .into_iter()
         .enumerate()
-        .map(|(i, (path, axis))| read_axis::read(axis, &path, searched.contains(&i), faults))
+        .map(|(i, (path, axis))| (number(&path), read_axis::read(axis, &path, searched.contains(&i), faults)))
         .collect();
     if let Some(size) = size {
-        if searched.is_empty() {
-            faults.value(section.path("size"), Fault::NothingToSize);
-        }
         size.axes = searched;
     }
     Some(axes)
@@ -171,15 +229,15 @@ fn params(section: &Section<'_>, faults: &mut Faults) -> Map<String, Json> {
         match read_axis::param(value.get_ref()) {
             Some(json) => drop(params.insert(key.get_ref().to_string(), json)),
             None => faults.value(
-                super::span::join(&section.path("params"), key.get_ref()),
-                wrong(&super::fault::show(key.get_ref()), value.get_ref(), "a finite number or a word"),
+                section.path("params").key(key.get_ref()),
+                wrong(&show(key.get_ref()), value.get_ref(), "a finite number or a word"),
             ),
         }
     }
     params
 }
 
-fn channels(section: &Section<'_>, faults: &mut Faults) -> Option<Vec<Option<String>>> {
+fn channels(section: &Section<'_>, faults: &mut Faults) -> Option<Numbered<String>> {
     let list = section.list("channels", "a list, such as [\"dfg.scale\", \"dfg.f82\"]", faults)?;
     let mut channels = Vec::new();
     // a list far too long is refused by its length alone
@@ -187,46 +245,33 @@ fn channels(section: &Section<'_>, faults: &mut Faults) -> Option<Vec<Option<Str
         let channel = item.get_ref().as_str().map(str::to_owned);
         if channel.is_none() {
             let fault = wrong(&format!("channels[{i}]"), item.get_ref(), "a word in quotes");
-            faults.value(format!("{}[{i}]", section.path("channels")), fault);
+            faults.value(section.path("channels").index(i), fault);
         }
-        channels.push(channel);
+        channels.push((i, channel));
     }
     Some(channels)
 }
 
-fn outputs(section: &Section<'_>, faults: &mut Faults) -> Option<Vec<Option<Output>>> {
+fn outputs(section: &Section<'_>, faults: &mut Faults) -> Option<Numbered<Output>> {
     let list = section.list("outputs", "a list, such as [\"exr:half\"]", faults)?;
     if list.is_empty() || list.len() > 64 {
         let allowed = "1 to 64".to_owned();
         faults.value(section.path("outputs"), Fault::Count { key: "outputs", got: list.len(), allowed });
-        return Some(vec![None]);
+        return Some(vec![(0, None)]);
     }
     let mut outputs = Vec::new();
     for (i, item) in list.iter().enumerate() {
-        let path = format!("{}[{i}]", section.path("outputs"));
-        let output = item.get_ref().as_str().and_then(|text| text.split_once(':'));
-        if output.is_none() {
-            let fault = match item.get_ref().as_str() {
-                Some(got) => Fault::OutputForm { got: super::fault::show(got), allowed: containers() },
-                None => wrong(&format!("outputs[{i}]"), item.get_ref(), "a string, such as \"exr:half\""),
-            };
-            faults.value(path, fault);
-        }
-        outputs.push(output.map(|(container, rest)| {
-            let mut words = rest.split('+').map(|w| w.trim().to_owned());
-            let storage = words.next().unwrap_or_default();
-            Output { container: container.to_owned(), storage, options: words.collect() }
-        }));
+        let output = match item.get_ref().as_str() {
+            Some(text) => Output::parse(text),
+            None => Err(wrong(&format!("outputs[{i}]"), item.get_ref(), "a string, such as \"exr:half\"")),
+        };
+        let output = output.map_err(|fault| faults.value(section.path("outputs").index(i), fault));
+        outputs.push((i, output.ok()));
     }
     Some(outputs)
 }
 
-/// `exr, ktx2, ...`.
-fn containers() -> String {
-    formats().iter().map(|f| f.container).collect::<Vec<_>>().join(", ")
-}
-
-fn waivers(section: &Section<'_>, faults: &mut Faults) -> Vec<Option<Waiver>> {
+fn waivers(section: &Section<'_>, faults: &mut Faults) -> Numbered<Waiver> {
     let expected = "a list, such as [{ law = \"energy\", reason = \"...\" }]";
     let mut waivers = Vec::new();
     for (path, table) in section.tables("waive", expected, faults).unwrap_or_default() {
@@ -234,7 +279,7 @@ fn waivers(section: &Section<'_>, faults: &mut Faults) -> Vec<Option<Waiver>> {
         waiver.require("law", "law = \"energy\"", faults);
         waiver.require("reason", "reason = \"why this table may break it\"", faults);
         let (law, reason) = (waiver.text("law", faults), waiver.text("reason", faults));
-        waivers.push(law.zip(reason).map(|(law, reason)| Waiver { law, reason: reason.trim().to_owned() }));
+        waivers.push((number(&path), law.zip(reason).map(|(law, reason)| Waiver { law, reason })));
     }
     waivers
 }

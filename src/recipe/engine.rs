@@ -7,7 +7,8 @@
 //! What the shipped files are off by is measured like the tables of this program: read as the engine reads them, which is
 //! bilinearly and without knowing of an `offset`, against fresh integrals between the texels (`tests/engines.rs`).
 
-use super::{Plan, RecipeError, parse};
+use super::{RecipeError, parse};
+use crate::plan::Plan;
 use Reader::{Fixed, Shader};
 
 /// An engine and the tables that it loads.

@@ -1,6 +1,7 @@
 //! Recipes from disk.
 
-use super::{MAX_BYTES, Plan, RecipeError, parse};
+use super::{MAX_BYTES, RecipeError, parse};
+use crate::plan::Plan;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;

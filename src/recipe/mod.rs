@@ -1,4 +1,5 @@
-//! Recipes: TOML files that say which tables to bake. A recipe is read, checked whole and resolved into a [`Plan`].
+//! Recipes: TOML files that say which tables to bake. A recipe is read into requests, which the room [`plan`](crate::plan) judges and
+//! resolves into a [`Plan`]; here its faults get the line and column that their places stand at.
 //!
 //! # The file
 //! ```toml
@@ -66,7 +67,7 @@
 //!
 //! # Canonical form
 //! [`PlannedTable::canonical`] is the table with every default filled in, under the keys of the file. Two recipes that
-//! mean the same have the same canonical form and the same hash, whatever their spelling. It is itself a recipe.
+//! mean the same have the same canonical form and the same hash, whatever their spelling. It is itself a recipe: [`text`] writes it.
 //!
 //! ```
 //! let plan = brdfbake::recipe::parse(
@@ -85,77 +86,29 @@
 //! # Ok::<(), brdfbake::recipe::RecipeError>(())
 //! ```
 
-mod bind;
-mod canonical;
 mod diagnostic;
 mod document;
 mod engine;
-mod fault;
 mod load;
-mod name;
-mod outputs;
-mod plan;
 mod preset;
-mod probe;
 mod read_axis;
+mod read_size;
 mod section;
-mod sizing;
 mod span;
 mod write;
 
+pub use crate::plan::{Fault, Output, Plan, PlanError, PlannedTable, Sizing, TableRequest};
 pub use diagnostic::{Diagnostic, RecipeError};
 pub use engine::{ENGINES, Engine, EngineFile, Reader, Shipped, engine};
-pub use fault::Fault;
 pub use load::{LoadError, load};
-pub use outputs::Output;
-pub use plan::{Plan, PlanError, PlannedTable, TableRequest};
 pub use preset::{PRESETS, Preset, preset};
-pub use sizing::Sizing;
 pub use write::text;
 
-use crate::encode::{ENCODERS, Storage};
-use std::sync::LazyLock;
+use crate::plan::faults::Faults;
+use crate::plan::resolve::resolve;
 
 /// Most bytes of a recipe file.
 pub const MAX_BYTES: usize = 1 << 20;
-/// Most tables of a recipe.
-pub const MAX_TABLES: usize = 256;
-/// Tolerances that can be asked for. Sums in f64 reach about 1e-13; nothing coarser than a tenth is a table.
-pub const TOLERANCE: [f64; 2] = [1e-12, 0.1];
-
-/// A container and what it can store.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Format {
-    /// Container id: `exr`.
-    pub container: &'static str,
-    /// Its storages.
-    pub storages: Vec<Stored>,
-}
-
-/// A storage.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stored {
-    /// Storage id: `half`.
-    pub id: &'static str,
-    /// Half a step near 1: the default tolerance.
-    pub half_step: f64,
-    /// True if it spreads its steps over the range of the channel.
-    pub bounded: bool,
-}
-
-/// The containers and storages that a recipe can name: those of the registry of encoders.
-#[must_use]
-pub fn formats() -> &'static [Format] {
-    static FORMATS: LazyLock<Vec<Format>> = LazyLock::new(|| {
-        let stored =
-            |s: &Storage| Stored { id: s.id(), half_step: s.default_tolerance(), bounded: s.is_bounded() };
-        ENCODERS
-            .iter()
-            .map(|e| Format { container: e.id(), storages: e.storages().iter().map(stored).collect() })
-            .collect()
-    });
-    &FORMATS
-}
 
 /// Reads a recipe. `file_name` is used in messages only.
 ///
@@ -171,9 +124,15 @@ pub fn parse(source: &str, file_name: &str) -> Result<Plan, RecipeError> {
     if !errors.is_empty() {
         return Err(diagnostic::syntax(source, file_name, &errors));
     }
-    let mut faults = fault::Faults::default();
+    let mut faults = Faults::default();
     let document = document::read(root.get_ref(), &mut faults);
-    match plan::resolve(document, &mut faults) {
+    let mut judged = Faults::default();
+    let plan = resolve(document.name.as_deref(), document.tolerance, document.drafts, &mut judged);
+    for (place, fault) in judged.list {
+        faults.push(document.origins.locate(place), fault);
+    }
+    faults.dropped += judged.dropped;
+    match plan {
         Some(plan) if faults.is_empty() => Ok(plan),
         _ => Err(diagnostic::locate(source, file_name, &span::Spans::of(&root), faults)),
     }

@@ -1,6 +1,7 @@
 //! Recipes that come with the program: the files of `presets/`.
 
-use super::{Plan, RecipeError, parse};
+use super::{RecipeError, parse};
+use crate::plan::Plan;
 
 /// A recipe that comes with the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,10 +1,12 @@
 //! `[[table.axis]]` to an [`Axis`]. Ranges are checked later, by the axis itself.
 
-use super::fault::{Fault, Faults};
-use super::section::{Section, as_number, unknown_word, wrong};
-use super::sizing::PROVISIONAL;
+use super::section::{Section, as_number, wrong};
 use crate::grid::quantity::QUANTITIES;
 use crate::grid::{Axis, Direction, Quantity, Texel, Warp};
+use crate::plan::Path;
+use crate::plan::fault::{Fault, unknown_word};
+use crate::plan::faults::Faults;
+use crate::plan::sizing::PROVISIONAL;
 use toml::de::{DeTable, DeValue};
 
 const KEYS: &[&str] = &["id", "length", "domain", "warp", "texel", "direction", "offset", "clamp"];
@@ -18,7 +20,7 @@ const WORDS: &[(&str, Warp)] = &[
 
 /// Reads an axis; none if its quantity or its length cannot be read.
 /// `searched`: its length will be found.
-pub(super) fn read(table: &DeTable<'_>, path: &str, searched: bool, faults: &mut Faults) -> Option<Axis> {
+pub(super) fn read(table: &DeTable<'_>, path: &Path, searched: bool, faults: &mut Faults) -> Option<Axis> {
     let section = Section::new(table, path, "[[table.axis]]", KEYS, faults);
     section.require("id", "id = \"mu\"", faults);
     if !searched {
@@ -67,7 +69,7 @@ fn warp(section: &Section<'_>, faults: &mut Faults) -> Option<Warp> {
     }
 }
 
-fn warp_table(table: &DeTable<'_>, path: &str, faults: &mut Faults) -> Option<Warp> {
+fn warp_table(table: &DeTable<'_>, path: &Path, faults: &mut Faults) -> Option<Warp> {
     let coupled = table.contains_key("coupled");
     let keys: &[&str] = if coupled {
         &["coupled", "power", "scale", "exponent"]
@@ -96,26 +98,8 @@ fn warp_table(table: &DeTable<'_>, path: &str, faults: &mut Faults) -> Option<Wa
         (Some(_), Some(_)) => "it has both `power` and `one-minus-power`",
         (None, None) => "it has none of `power`, `one-minus-power`, `coupled`",
     };
-    faults.value(path, Fault::WarpForm { why });
+    faults.value(path.clone(), Fault::WarpForm { why });
     None
-}
-
-/// The axis in its one canonical form: equal maps are equal values.
-pub(super) fn canonical(mut axis: Axis) -> Axis {
-    let is = |a: f64, b: f64| (a - b).abs() == 0.0;
-    if let Warp::Power(p) | Warp::OneMinusPower(p) = axis.warp
-        && is(p, 1.0)
-    {
-        axis.warp = Warp::Linear;
-    }
-    if axis.clamp.is_some_and(|[a, b]| is(a, axis.domain[0]) && is(b, axis.domain[1])) {
-        axis.clamp = None;
-    }
-    // -0 and 0 are the same place
-    axis.offset += 0.0;
-    axis.domain = axis.domain.map(|v| v + 0.0);
-    axis.clamp = axis.clamp.map(|c| c.map(|v| v + 0.0));
-    axis
 }
 
 /// A value of `params`: a number, a word, or rows of numbers, as JSON.

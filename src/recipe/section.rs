@@ -1,13 +1,13 @@
 //! One section of a recipe file: its known keys, read by type. A value of the wrong type is a fault and reads as none.
 
-use super::fault::{Fault, Faults, show};
-use super::span::join;
-use crate::math::nearest::nearest;
+use crate::plan::fault::{Fault, show, slip, unknown_word};
+use crate::plan::faults::Faults;
+use crate::plan::{LONGEST_REASON, Path};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// Most characters of a text.
-pub(super) const LONGEST_TEXT: usize = 1000;
+const LONGEST_TEXT: usize = LONGEST_REASON;
 
 /// Most bytes of the text round the numbers of a file.
 pub(super) const LONGEST_AROUND: usize = 1 << 16;
@@ -16,7 +16,7 @@ pub(super) const LONGEST_AROUND: usize = 1 << 16;
 #[derive(Debug)]
 pub(super) struct Section<'a> {
     table: &'a DeTable<'a>,
-    path: String,
+    path: Path,
     /// As written in the file: `[[table.axis]]`.
     name: &'static str,
 }
@@ -25,7 +25,7 @@ impl<'a> Section<'a> {
     /// Takes a table and reports the keys that it should not have.
     pub(super) fn new(
         table: &'a DeTable<'a>,
-        path: &str,
+        path: &Path,
         name: &'static str,
         keys: &[&str],
         faults: &mut Faults,
@@ -37,14 +37,14 @@ impl<'a> Section<'a> {
                 allowed: keys.join(", "),
                 suggestion: slip(key, keys.iter().copied()),
             };
-            faults.key(join(path, key), fault);
+            faults.key(path.key(key), fault);
         }
-        Section { table, path: path.to_owned(), name }
+        Section { table, path: path.clone(), name }
     }
 
     /// Path of a key.
-    pub(super) fn path(&self, key: &str) -> String {
-        join(&self.path, key)
+    pub(super) fn path(&self, key: &str) -> Path {
+        self.path.key(key)
     }
 
     /// The value of a key.
@@ -112,7 +112,7 @@ impl<'a> Section<'a> {
             *slot = as_number(item.get_ref());
             if slot.is_none() {
                 let entry = format!("{key}[{i}]");
-                faults.value(self.path(key) + &entry[key.len()..], wrong(&entry, item.get_ref(), "a number"));
+                faults.value(self.path(key).index(i), wrong(&entry, item.get_ref(), "a number"));
             }
         }
         Some([pair[0]?, pair[1]?])
@@ -173,10 +173,10 @@ impl<'a> Section<'a> {
         key: &'static str,
         expected: &'static str,
         faults: &mut Faults,
-    ) -> Option<Vec<(String, &'a DeTable<'a>)>> {
+    ) -> Option<Vec<(Path, &'a DeTable<'a>)>> {
         let mut tables = Vec::new();
         for (i, item) in self.list(key, expected, faults)?.iter().enumerate() {
-            let path = format!("{}[{i}]", self.path(key));
+            let path = self.path(key).index(i);
             match item.get_ref().as_table() {
                 Some(table) => tables.push((path, table)),
                 None => faults.value(path, wrong(key, item.get_ref(), "a table")),
@@ -226,22 +226,4 @@ fn type_name(value: &DeValue<'_>) -> &'static str {
         DeValue::Array(_) => "a list",
         DeValue::Table(_) => "a table",
     }
-}
-
-/// A word that is not among those offered.
-pub(super) fn unknown_word<'a>(what: &str, got: &str, words: impl Iterator<Item = &'a str> + Clone) -> Fault {
-    Fault::Word {
-        what: what.to_owned(),
-        got: show(got),
-        allowed: words.clone().collect::<Vec<_>>().join(", "),
-        suggestion: slip(got, words),
-    }
-}
-
-/// The nearest word, if `got` is short enough to be a slip of one.
-fn slip<'a>(got: &str, words: impl Iterator<Item = &'a str>) -> Option<String> {
-    if got.len() > 64 {
-        return None;
-    }
-    nearest(got, words).map(str::to_owned)
 }

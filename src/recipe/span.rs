@@ -1,6 +1,6 @@
 //! Where each key and value of a file lies, by path: `table[0].axis[1].warp`.
 
-use super::fault::Place;
+use crate::plan::{Part, Path, Place};
 use std::collections::HashMap;
 use std::ops::Range;
 use toml::Spanned;
@@ -13,41 +13,41 @@ const DEEPEST: usize = 8;
 #[derive(Debug)]
 pub(super) struct Spans {
     /// Key, value.
-    at: HashMap<String, [Range<usize>; 2]>,
+    at: HashMap<Path, [Range<usize>; 2]>,
 }
 
 impl Spans {
     pub(super) fn of(root: &Spanned<DeTable<'_>>) -> Spans {
         let mut spans = Spans { at: HashMap::new() };
-        spans.table("", root.get_ref(), 0);
+        spans.table(&Path::root(), root.get_ref(), 0);
         spans
     }
 
     /// The range of a place; that of the nearest section around it if the place itself is not in the file.
     pub(super) fn find(&self, place: &Place) -> Range<usize> {
-        let mut path = place.path.as_str();
-        let mut wants_key = place.key;
+        let mut path = place.path.clone();
+        let mut wants_key = place.part == Part::Key;
         loop {
-            if let Some([key, value]) = self.at.get(path) {
+            if let Some([key, value]) = self.at.get(&path) {
                 return if wants_key { key.clone() } else { value.clone() };
             }
-            match path.rfind(['.', '[']) {
-                Some(end) => path = &path[..end],
+            match path.parent() {
+                Some(parent) => path = parent,
                 None => return 0..0,
             }
             wants_key = false;
         }
     }
 
-    fn table(&mut self, path: &str, table: &DeTable<'_>, depth: usize) {
+    fn table(&mut self, path: &Path, table: &DeTable<'_>, depth: usize) {
         for (key, value) in table {
-            let path = join(path, key.get_ref());
+            let path = path.key(key.get_ref());
             self.value(&path, value, depth);
             self.at.insert(path, [key.span(), value.span()]);
         }
     }
 
-    fn value(&mut self, path: &str, value: &Spanned<DeValue<'_>>, depth: usize) {
+    fn value(&mut self, path: &Path, value: &Spanned<DeValue<'_>>, depth: usize) {
         if depth >= DEEPEST {
             return;
         }
@@ -55,7 +55,7 @@ impl Spans {
             DeValue::Table(table) => self.table(path, table, depth + 1),
             DeValue::Array(list) => {
                 for (i, item) in list.iter().enumerate() {
-                    let path = format!("{path}[{i}]");
+                    let path = path.index(i);
                     self.value(&path, item, depth + 1);
                     self.at.insert(path, [item.span(), item.span()]);
                 }
@@ -63,11 +63,4 @@ impl Spans {
             _ => {}
         }
     }
-}
-
-/// A key below a path. A key with other characters than a bare one is quoted, so that paths are unambiguous.
-pub(super) fn join(path: &str, key: &str) -> String {
-    let bare = !key.is_empty() && key.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'-' || b == b'_');
-    let key = if bare { key.to_owned() } else { format!("{key:?}") };
-    if path.is_empty() { key } else { format!("{path}.{key}") }
 }

@@ -1,91 +1,77 @@
-//! A request as a recipe: the text that reads back to it. What is a default is left out.
+//! Requests as the text of a recipe that reads back to the same plan.
+//!
+//! The keys are those of the canonical form, so a new key is written without a line here. What an axis has by default is left out.
 
-use super::TableRequest;
-use crate::grid::{Axis, Direction, Texel, Warp};
+use crate::plan::{TableRequest, canonical};
+use serde_json::{Map, Value as Json, json};
 use std::fmt::Write;
 
-/// A recipe with one table. Waivers and `size` are not written: they are of no use to what a program suggests.
+/// The recipe with these tables. Of a plan, by [`Plan::requests`](crate::plan::Plan::requests), it says everything; of other requests
+/// what they say.
 ///
 /// ```
-/// use brdfbake::recipe::{TableRequest, parse, text};
+/// use brdfbake::plan::{Plan, TableRequest};
+/// use brdfbake::recipe::{parse, text};
 /// use brdfbake::tables::spec::Request;
 ///
-/// let request = Request { kind: "albedo".into(), ..Request::default() };
-/// let plan = parse(&text("mine", &TableRequest::new("e", request)), "mine.toml")?;
-/// assert_eq!(plan.tables[0].name, "e");
+/// let table = TableRequest::new("e", Request { kind: "albedo".into(), ..Request::default() });
+/// let plan = parse(&text("mine", &[table]), "mine.toml")?;
+/// let again = parse(&text("mine", &plan.requests()), "again.toml")?;
+/// assert_eq!(again.hash, plan.hash);
 /// # Ok::<(), brdfbake::recipe::RecipeError>(())
 /// ```
 #[must_use]
-pub fn text(name: &str, table: &TableRequest) -> String {
-    let request = &table.request;
-    let mut out =
-        format!("name = \"{name}\"\n\n[[table]]\nkind = \"{}\"\nname = \"{}\"\n", request.kind, table.name);
-    let mut put = |key: &str, value: String| {
-        let _ = writeln!(out, "{key} = {value}");
-    };
-    if let Some(layout) = &request.layout {
-        put("layout", quoted(layout));
-    }
-    if let Some(channels) = &request.channels {
-        put("channels", list(channels));
-    }
-    if let Some(model) = &request.model {
-        put("model", quoted(model));
-    }
-    if !request.params.is_empty() {
-        let params: Vec<String> = request.params.iter().map(|(k, v)| format!("{k} = {v}")).collect();
-        put("params", format!("{{ {} }}", params.join(", ")));
-    }
-    if let Some(tolerance) = table.tolerance {
-        put("tolerance", format!("{tolerance:?}"));
-    }
-    let outputs: Vec<String> = table.outputs.iter().map(ToString::to_string).collect();
-    put("outputs", list(&outputs));
-    if !table.reconstruction {
-        put("reconstruction", quoted("off"));
-    }
-    for axis in request.axes.iter().flatten() {
-        out.push_str(&axis_text(axis));
+pub fn text(name: &str, tables: &[TableRequest]) -> String {
+    let mut out = format!("name = {}\n", string(name));
+    for table in tables {
+        out.push_str("\n[[table]]\n");
+        let mut keys = canonical::table(table);
+        let axes = keys.remove("axis");
+        pairs(&mut out, &keys);
+        for axis in axes.iter().filter_map(Json::as_array).flatten().filter_map(Json::as_object) {
+            let mut axis = axis.clone();
+            for (key, preset) in
+                [("warp", json!("linear")), ("direction", json!("ascending")), ("offset", json!(0.0))]
+            {
+                if axis.get(key) == Some(&preset) {
+                    axis.remove(key);
+                }
+            }
+            out.push_str("\n[[table.axis]]\n");
+            pairs(&mut out, &axis);
+        }
     }
     out
 }
 
-fn axis_text(axis: &Axis) -> String {
-    let mut out = format!("\n[[table.axis]]\nid = \"{}\"\nlength = {}\n", axis.quantity.id, axis.len);
-    let mut put = |key: &str, value: String| {
-        let _ = writeln!(out, "{key} = {value}");
-    };
-    let pair = |[a, b]: [f64; 2]| format!("[{a:?}, {b:?}]");
-    put("domain", pair(axis.domain));
-    match &axis.warp {
-        Warp::Linear => {}
-        Warp::Power(p) => put("warp", format!("{{ power = {p:?} }}")),
-        Warp::OneMinusPower(p) => put("warp", format!("{{ one-minus-power = {p:?} }}")),
-        Warp::Coupled { to, power, scale, exponent } => put(
-            "warp",
-            format!(
-                "{{ coupled = \"{to}\", power = {power:?}, scale = {scale:?}, exponent = {exponent:?} }}"
-            ),
-        ),
+/// `key = value` lines.
+fn pairs(out: &mut String, keys: &Map<String, Json>) {
+    for (k, v) in keys {
+        // writing to a string does not fail
+        let _ = writeln!(out, "{} = {}", key(k), value(v));
     }
-    put("texel", quoted(if axis.texel == Texel::Center { "center" } else { "endpoint" }));
-    if axis.direction == Direction::Descending {
-        put("direction", quoted("descending"));
-    }
-    if axis.offset.abs() > 0.0 {
-        put("offset", format!("{:?}", axis.offset));
-    }
-    if let Some(clamp) = axis.clamp {
-        put("clamp", pair(clamp));
-    }
-    out
 }
 
-fn quoted(text: &str) -> String {
-    format!("\"{text}\"")
+/// A value in one line. JSON and TOML write numbers and booleans alike.
+fn value(json: &Json) -> String {
+    match json {
+        Json::String(text) => string(text),
+        Json::Array(items) => format!("[{}]", items.iter().map(value).collect::<Vec<_>>().join(", ")),
+        Json::Object(map) if map.is_empty() => "{}".to_owned(),
+        Json::Object(map) => {
+            let pair = |(k, v): (&String, &Json)| format!("{} = {}", key(k), value(v));
+            format!("{{ {} }}", map.iter().map(pair).collect::<Vec<_>>().join(", "))
+        }
+        other => other.to_string(),
+    }
 }
 
-fn list(items: &[String]) -> String {
-    let items: Vec<String> = items.iter().map(|i| quoted(i)).collect();
-    format!("[{}]", items.join(", "))
+fn key(text: &str) -> String {
+    let bare = |b: u8| b.is_ascii_alphanumeric() || b == b'-' || b == b'_';
+    if !text.is_empty() && text.bytes().all(bare) { text.to_owned() } else { string(text) }
+}
+
+/// A basic string: the escapes of JSON, and one of a character that JSON takes as it is.
+fn string(text: &str) -> String {
+    Json::from(text).to_string().replace('\u{7f}', "\\u007f")
 }

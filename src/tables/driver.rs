@@ -7,16 +7,32 @@ use super::{Bound, TexelError};
 use crate::cancel::{Cancel, Cancelled};
 use crate::grid::Table;
 use rayon::prelude::*;
+use serde::Serialize;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What to do with a texel whose error estimate stays above the tolerance.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum OnMiss {
     /// It is an error.
     #[default]
     Fail,
     /// It is counted and reported in the file.
     Report,
+}
+
+impl OnMiss {
+    /// All of them, in the order of messages.
+    pub const ALL: [OnMiss; 2] = [OnMiss::Fail, OnMiss::Report];
+
+    /// Id in recipes.
+    #[must_use]
+    pub const fn id(self) -> &'static str {
+        match self {
+            OnMiss::Fail => "fail",
+            OnMiss::Report => "report",
+        }
+    }
 }
 
 /// How to bake.

@@ -4,7 +4,7 @@ use brdfbake::cancel::{Cancel, Cancelled};
 use brdfbake::encode::diff_files::{self, DiffError};
 use brdfbake::encode::read::{read_bytes_until, read_file_until};
 use brdfbake::encode::{
-    ENCODERS, EncodeError, EncodeInput, ReadError, Storage, Tolerance, Unstored, quantise_table_until,
+    ENCODERS, EncodeError, EncodeInput, Label, ReadError, Storage, Tolerance, Unstored, quantise_table_until,
 };
 use brdfbake::grid::fit::Samples;
 use brdfbake::grid::{Axis, Channel, Grid, Quantity, Table, Texel};
@@ -138,7 +138,7 @@ fn containers_stop() {
             errors: &[],
             storage: encoder.storages()[0],
             options: &[],
-            provenance_json: "{}",
+            label: Label::default(),
             cancel,
         };
         let (stop, go) = (set(), Cancel::new());

@@ -3,7 +3,7 @@
 use super::dds_file::decoded;
 use super::support::{table, written};
 use brdfbake::encode::read::read_bytes;
-use brdfbake::encode::{EncodeError, EncodeInput, Quantised, Storage, encoder, quantise_table};
+use brdfbake::encode::{EncodeError, EncodeInput, Label, Quantised, Storage, encoder, quantise_table};
 use brdfbake::grid::Table;
 
 /// Numbers without pattern.
@@ -219,7 +219,7 @@ fn bytes_that_are_not_those_of_the_values_are_refused() {
         errors: &[],
         storage: Storage::Bc6h,
         options: &[],
-        provenance_json: "{}",
+        label: Label::default(),
         cancel: &brdfbake::cancel::Cancel::new(),
     };
     let dds = encoder("dds").unwrap();

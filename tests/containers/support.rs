@@ -1,7 +1,7 @@
 //! Tables of one to four axes and their files.
 
 use crate::sample;
-use brdfbake::encode::{EncodeError, EncodeInput, FileOption, Storage, encoder, quantise_table};
+use brdfbake::encode::{EncodeError, EncodeInput, FileOption, Label, Storage, encoder, quantise_table};
 use brdfbake::grid::{Axis, Channel, Grid, Quantity, Table, Texel};
 
 /// A table with axes of these lengths and `channels` channels in (0, 1).
@@ -36,7 +36,8 @@ pub(crate) fn written(
     options: &[FileOption],
 ) -> Result<(Vec<u8>, Vec<f64>), EncodeError> {
     let rounded = quantise_table(table, storage).unwrap();
-    let json = serde_json::to_string(&sample::provenance(table, storage)).unwrap();
+    let provenance = sample::provenance(table, storage);
+    let json = serde_json::to_string(&provenance).unwrap();
     let input = EncodeInput {
         grid: &table.grid,
         channels: &table.channels,
@@ -45,7 +46,7 @@ pub(crate) fn written(
         errors: &table.errors,
         storage,
         options,
-        provenance_json: &json,
+        label: Label { name: &provenance.name, identity: &provenance.recipe.hash, provenance_json: &json },
         cancel: &brdfbake::cancel::Cancel::new(),
     };
     Ok((encoder(container).unwrap().encode(&input)?, rounded.values))

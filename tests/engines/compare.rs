@@ -3,7 +3,7 @@
 use crate::common::shared;
 use crate::engines::support::{Texture, bake, exact, npy, numbers, picture, plan};
 use brdfbake::grid::{Axis, Quantity, Texel};
-use brdfbake::recipe::Plan;
+use brdfbake::plan::Plan;
 use brdfbake::recipe::engine;
 use brdfbake::tables::spec::{Bound, Request};
 use brdfbake::verify::reconstruction::Probe;

@@ -25,7 +25,7 @@ fn a_table_names_its_file() {
     let written = std::fs::read_to_string(&files[0]).unwrap();
     assert!(written.starts_with("// one\n0x") && written.ends_with(" // end"), "{written}");
     assert_eq!(files[0].file_name().unwrap(), "lut.inc");
-    assert_eq!(plan.tables[0].canonical["file"], "lut.inc");
+    assert_eq!(plan.tables[0].canonical()["file"], "lut.inc");
 }
 
 #[test]

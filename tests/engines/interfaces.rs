@@ -154,7 +154,7 @@ fn osl_headers_hold_what_genluts_samples() {
 fn osl_interfaces_hold_what_genluts_samples() {
     let plan = plan("osl", |_| true);
     for (planned, name) in plan.tables.iter().zip(["MiniMicrofacetGGX", "DielectricFront"]) {
-        let before = planned.around[0].as_deref().unwrap();
+        let before = planned.asked.before.as_deref().unwrap();
         assert!(before.contains(&format!("{name}::Energy& {name}::get_energy()\n{{")), "{before}");
     }
     let chosen = [(0, 8, 20), (1, 3, 5), (4, 15, 31), (8, 10, 12), (15, 15, 9), (12, 5, 16)];

@@ -4,9 +4,10 @@
 //! or a channel of another place, they have other values.
 
 use crate::engines::support::{npy, numbers, picture, plan};
-use brdfbake::encode::{self, EncodeInput, Storage, quantise_table};
+use brdfbake::encode::{self, EncodeInput, FileOption, Label, quantise_table};
 use brdfbake::grid::Table;
-use brdfbake::recipe::{ENGINES, PlannedTable};
+use brdfbake::plan::PlannedTable;
+use brdfbake::recipe::ENGINES;
 use half::f16;
 use std::collections::BTreeSet;
 
@@ -161,7 +162,7 @@ fn files_hold_a_texel_in_its_place() {
             let [width, height, slices] = spec.grid.extent();
             let place = [width / 3, height / 5, slices / 7];
             let (at, n, channels) = (number(&planned, place), spec.layout.channels.len(), spec.channels());
-            let storage = Storage::find(&planned.outputs[0].storage).unwrap();
+            let storage = planned.outputs[0].storage;
             let span = |c: usize| {
                 let [lo, hi] = channels[c].range;
                 if storage.is_bounded() { [lo, hi - lo] } else { [0.0, 1.0] }
@@ -175,7 +176,6 @@ fn files_hold_a_texel_in_its_place() {
             let grid = spec.grid.clone();
             let made = Table { grid, channels: channels.clone(), values, errors, evaluations };
             let stored = quantise_table(&made, storage).unwrap();
-            let options = planned.outputs[0].file_options();
             let input = EncodeInput {
                 grid: &made.grid,
                 channels: &channels,
@@ -183,11 +183,11 @@ fn files_hold_a_texel_in_its_place() {
                 blocks: &stored.blocks,
                 errors: &[],
                 storage,
-                options: &options,
-                provenance_json: "{}",
+                options: &planned.outputs[0].options,
+                label: Label::default(),
                 cancel: &brdfbake::cancel::Cancel::new(),
             };
-            let bytes = encode::encoder(&planned.outputs[0].container).unwrap().encode(&input).unwrap();
+            let bytes = planned.outputs[0].encoder.encode(&input).unwrap();
             let found = read(&planned, &bytes, [width, height, slices], n);
             for c in 0..n {
                 let got = span(c)[0] + span(c)[1] * found(at, c);
@@ -197,10 +197,10 @@ fn files_hold_a_texel_in_its_place() {
                     (got - wanted(c)).abs() <= slack,
                     "{} {}, channel {c}: {got}",
                     engine.id,
-                    planned.name
+                    planned.name()
                 );
                 let next = found((at + 1) % spec.grid.len(), c);
-                assert!(next.abs() < 1e-6, "{} {}, channel {c}: {next} beside it", engine.id, planned.name);
+                assert!(next.abs() < 1e-6, "{} {}, channel {c}: {next} beside it", engine.id, planned.name());
             }
         }
     }
@@ -223,8 +223,8 @@ fn read(
         path
     };
     let bytes = bytes.to_vec();
-    let rgba = output.options.iter().any(|o| o == "rgba");
-    match (output.container.as_str(), output.storage.as_str()) {
+    let rgba = output.options.contains(&FileOption::Rgba);
+    match (output.encoder.id(), output.storage.id()) {
         ("dds", "half") => {
             let components = if rgba || n == 3 { 4 } else { n };
             Box::new(move |t, c| {
@@ -245,7 +245,7 @@ fn read(
             f64::from(f32::from_le_bytes(bytes[i..i + 4].try_into().unwrap()))
         }),
         ("text", _) => {
-            let planar = output.options.iter().any(|o| o == "planar");
+            let planar = output.options.contains(&FileOption::Planar);
             let list = numbers(&String::from_utf8(bytes).unwrap()).concat();
             let texels = width * height * slices;
             Box::new(move |t, c| list[if planar { c * texels + t } else { t * n + c }])

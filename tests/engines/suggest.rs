@@ -11,7 +11,7 @@ use naga::{BinaryOperator, Expression, Function, Handle, Literal, MathFunction, 
 fn suggested(id: &str, table: &str, error: f64, practical: bool) -> Suggestion {
     let engine = engine(id).unwrap();
     let mut plan = engine.plan().unwrap();
-    plan.tables.retain(|t| t.name == table);
+    plan.tables.retain(|t| t.name() == table);
     let want = Want { error, practical, longest: 96 };
     suggest(engine, &plan, want, &Cancel::new()).unwrap().remove(0)
 }

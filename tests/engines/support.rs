@@ -4,7 +4,8 @@ use brdfbake::cancel::Cancel;
 use brdfbake::encode::read;
 use brdfbake::grid::fit::Texels;
 use brdfbake::pipeline::{self, Settings, Silent};
-use brdfbake::recipe::{self, Plan};
+use brdfbake::plan::Plan;
+use brdfbake::recipe;
 use half::f16;
 use std::path::{Path, PathBuf};
 
@@ -49,13 +50,13 @@ impl Texture {
 /// The tables of an engine whose names pass, without the report between the texels.
 pub(crate) fn plan(id: &str, wanted: impl Fn(&str) -> bool) -> Plan {
     let mut plan = recipe::engine(id).unwrap().plan().unwrap_or_else(|e| panic!("{e}"));
-    plan.tables.retain(|t| wanted(&t.name));
+    plan.tables.retain(|t| wanted(t.name()));
     plan
 }
 
 /// The same with a sample in every texel, whatever the engine's recipe says: to be compared with another program's samples.
 pub(crate) fn exact(mut plan: Plan) -> Plan {
-    plan.tables.iter_mut().for_each(|t| t.texels = Texels::default());
+    plan.tables.iter_mut().for_each(|t| t.asked.texels = Texels::default());
     plan
 }
 

@@ -1,7 +1,7 @@
 //! Pictures, volumes and arrays as KTX2 and DDS, with options, and what they must hold.
 
 use crate::sample;
-use brdfbake::encode::{EncodeInput, FileOption, Quantised, Shape, Storage, encoder, quantise_table};
+use brdfbake::encode::{EncodeInput, FileOption, Label, Quantised, Shape, Storage, encoder, quantise_table};
 use brdfbake::grid::{Axis, Channel, Grid, Quantity, Table, Texel};
 use std::path::Path;
 
@@ -69,7 +69,8 @@ fn write_one(
     let channels = if storage == Storage::Rgb9e5 { 3 } else { 2 + lengths.len() % 2 };
     let t = table(lengths, channels);
     let Quantised { values, blocks, .. } = quantise_table(&t, storage).unwrap();
-    let provenance_json = serde_json::to_string(&sample::provenance(&t, storage)).unwrap();
+    let provenance = sample::provenance(&t, storage);
+    let json = serde_json::to_string(&provenance).unwrap();
     let (grid, channels, errors) = (&t.grid, &t.channels, &t.errors);
     let input = EncodeInput {
         grid,
@@ -79,7 +80,7 @@ fn write_one(
         errors,
         storage,
         options,
-        provenance_json: &provenance_json,
+        label: Label { name: &provenance.name, identity: &provenance.recipe.hash, provenance_json: &json },
         cancel: &brdfbake::cancel::Cancel::new(),
     };
     let bytes = encoder.encode(&input).unwrap();
@@ -97,7 +98,7 @@ fn write_one(
     let name = format!("{}.{container}", words.join("-"));
     let expected = serde_json::json!({"width": width, "height": height, "storage": storage.id(), "channels": planes,
         "depth": if shape.is_volume() { slices } else { 0 }, "layers": shape.layers().unwrap_or(0),
-        "components": components, "fill": shape.fill(components), "brdfbake": provenance_json});
+        "components": components, "fill": shape.fill(components), "brdfbake": json});
     std::fs::write(folder.join(&name), bytes).unwrap();
     std::fs::write(folder.join(format!("{name}.expected.json")), expected.to_string()).unwrap();
 }

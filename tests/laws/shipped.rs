@@ -2,7 +2,8 @@
 
 use super::support::bake;
 use brdfbake::grid::{Axis, Grid};
-use brdfbake::recipe::{ENGINES, PRESETS, Plan, PlannedTable, parse};
+use brdfbake::plan::{Plan, PlannedTable};
+use brdfbake::recipe::{ENGINES, PRESETS, parse};
 use brdfbake::tables::spec::{Bound, Spec};
 use brdfbake::verify;
 
@@ -36,9 +37,9 @@ fn look(longest: usize) {
                 continue;
             }
             seen.push(what);
-            let name = format!("{plan}/{}", planned.name);
+            let name = format!("{plan}/{}", planned.name());
             let table = bake(&bound, planned.tolerance);
-            match verify::check(&bound, table, planned.tolerance, &planned.waivers) {
+            match verify::check(&bound, table, planned.tolerance, &planned.asked.waivers) {
                 Err(findings) => faults.extend(findings.iter().map(|f| format!("{name}: {f}"))),
                 Ok((verified, _)) => {
                     for law in verified.laws().iter().filter(|l| l.checked == 0) {
@@ -49,7 +50,7 @@ fn look(longest: usize) {
                             faults.push(format!("{name}: {} was not checked: {why}", law.law));
                         }
                     }
-                    if !verified.verified() && planned.waivers.is_empty() && verified.tolerance_met() {
+                    if !verified.verified() && planned.asked.waivers.is_empty() && verified.tolerance_met() {
                         faults.push(format!("{name}: not verified"));
                     }
                 }

@@ -91,6 +91,29 @@ fn the_structured_form_names_key_and_place() {
 }
 
 #[test]
+fn lists_with_entries_that_cannot_be_read_keep_their_places() {
+    let source = "name = 'x'\nengine = 'bevy'\n[[table]]\nkind = 'dfg'\nname = 'a'\noutputs = ['exr:haf', 'exr:half', 'exr:half']\n\
+                  waive = [1, { law = 'energy', reason = 'e' }, { law = 'energy', reason = 'e' }]\nchannels = [2, 'dfg.scale', 'dfg.scal']\n\
+                  [[table.axis]]\nid = 'mu'\n[[table.axis]]\nid = 'roughness'\nlength = 8\nclamp = [2, 3]\n";
+    let error = refused(source, "x.toml");
+    let keys: Vec<(&str, usize)> = error.diagnostics.iter().map(|d| (d.key.as_str(), d.line)).collect();
+    assert_eq!(
+        keys,
+        [
+            ("table[0].outputs[0]", 6),
+            ("table[0].outputs[2]", 6),
+            ("table[0].waive[0]", 7),
+            ("table[0].waive[2].law", 7),
+            ("table[0].channels[0]", 8),
+            ("table[0].channels[2]", 8),
+            ("table[0].axis[0]", 9),
+            ("table[0].axis[1].clamp", 14),
+        ],
+        "{error}"
+    );
+}
+
+#[test]
 fn a_byte_order_mark_and_crlf_do_not_move_columns() {
     let error = refused("\u{feff}nam = 'x'\r\ntolerance = 3\r\n", "x.toml");
     let at: Vec<(usize, usize)> = error.diagnostics.iter().map(|d| (d.line, d.column)).collect();

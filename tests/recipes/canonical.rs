@@ -1,12 +1,18 @@
 //! Two recipes that mean the same have the same hash; two that do not, have not. The canonical form is a recipe.
 
-use brdfbake::recipe::{PRESETS, Plan, parse};
+use brdfbake::plan::identity::Hasher;
+use brdfbake::plan::{Input, Plan};
+use brdfbake::recipe::{PRESETS, parse};
 
 fn plan(source: &str) -> Plan {
     parse(source, "x.toml").unwrap_or_else(|e| panic!("{e}"))
 }
 
 const SHORT: &str = "name = 'x'\n[[table]]\nkind = 'dfg'\nname = 'a'\n";
+
+/// The same with axes, in the shortest spelling.
+const AXES: &str = "name = 'x'\n[[table]]\nkind = 'dfg'\nname = 'a'\n[[table.axis]]\nid = 'mu'\nlength = 64\nwarp = 'sqrt'\n\
+                    [[table.axis]]\nid = 'roughness'\nlength = 64\n";
 
 /// The same with everything spelled out, other key order, other spellings of numbers and warps.
 const LONG: &str = r#"
@@ -20,9 +26,9 @@ name = "x"
 
 #[test]
 fn spelling_does_not_matter() {
-    let (short, long) = (plan(SHORT), plan(LONG));
-    assert_eq!(short.canonical.to_string(), long.canonical.to_string());
-    assert_eq!(short.tables[0].hash, long.tables[0].hash);
+    let (short, long) = (plan(AXES), plan(LONG));
+    assert_eq!(short.canonical().to_string(), long.canonical().to_string());
+    assert_eq!(short.tables[0].identity, long.tables[0].identity);
     assert_eq!(short.hash, long.hash);
     assert_eq!(short.hash.len(), 64);
     let axis = &long.tables[0].bound.spec.grid.axes()[1];
@@ -55,6 +61,17 @@ fn every_difference_of_meaning_changes_the_hash() {
         table("outputs = ['exr:float']\ntolerance = 0.000244140625"),
         table("outputs = ['exr:half', 'png:unorm16']\ntolerance = 0.000244140625"),
         table("on-miss = 'report'"),
+        table("texels = 'minimax'"),
+        table("texels = 'auto'"),
+        table("size = 'auto'"),
+        table("size = { error = 1e-2 }"),
+        table("size = { domain = 'practical' }"),
+        table("size = { warps = 'search' }"),
+        table("size = { longest = 64 }"),
+        table("outputs = ['ktx2:half']"),
+        table("outputs = ['ktx2:half+rgba']"),
+        table("outputs = ['text:half']\nbefore = 'x'"),
+        table("outputs = ['text:half']\nafter = 'x'"),
         table("reconstruction = 'off'"),
         table("waive = [{ law = 'energy', reason = 'one' }]"),
         table("waive = [{ law = 'energy', reason = 'two' }]"),
@@ -73,8 +90,8 @@ fn every_difference_of_meaning_changes_the_hash() {
         axis("").replacen("length = 8", "length = 9", 1),
         axis("").replace("roughness", "alpha"),
     ];
-    let mut hashes: Vec<String> = sources.iter().map(|s| plan(s).tables[0].hash.clone()).collect();
-    hashes.push(plan(&table("").replace("name = 'a'", "name = 'b'")).tables[0].hash.clone());
+    let mut hashes: Vec<String> = sources.iter().map(|s| plan(s).tables[0].identity.clone()).collect();
+    hashes.push(plan(&table("").replace("name = 'a'", "name = 'b'")).tables[0].identity.clone());
     let all = hashes.len();
     hashes.sort();
     hashes.dedup();
@@ -82,21 +99,56 @@ fn every_difference_of_meaning_changes_the_hash() {
 }
 
 #[test]
-fn the_name_of_a_recipe_is_in_its_own_hash_only() {
-    let (x, y) = (plan(SHORT), plan(&SHORT.replace("'x'", "'y'")));
-    assert_ne!(x.hash, y.hash);
-    assert_eq!(x.tables[0].hash, y.tables[0].hash);
+fn names_count_where_files_hold_them() {
+    let table = |recipe: &str, name: &str, more: &str| {
+        plan(&format!("name = '{recipe}'\n[[table]]\nkind = 'dfg'\nname = '{name}'\n{more}\n"))
+    };
+    let of = |plan: Plan| plan.tables[0].identity.clone();
+    // metadata names the recipe and the table
+    assert_ne!(of(table("x", "a", "")), of(table("y", "a", "")));
+    assert_ne!(of(table("x", "a", "")), of(table("x", "b", "")));
+    // numbers without a header name nothing
+    let bare = "outputs = ['raw:float', 'text:half']";
+    assert_eq!(of(table("x", "a", bare)), of(table("y", "b", bare)));
+    let one = "outputs = ['raw:float', 'exr:half']";
+    assert_ne!(of(table("x", "a", one)), of(table("y", "a", one)));
+    // no file holds its own name, but the text round its numbers
+    let file = |file: &str| of(table("x", "a", &format!("outputs = ['raw:float']\nfile = '{file}'")));
+    assert_eq!(file("a.bin"), file("b.bin"));
+    let round = |text: &str| of(table("x", "a", &format!("outputs = ['raw:float']\nbefore = '{text}'")));
+    assert_ne!(round("1"), round("2"));
+    assert_ne!(plan(SHORT).hash, plan(&SHORT.replace("'x'", "'y'")).hash);
+    // nor the path of the recipe
+    assert_eq!(parse(SHORT, "/somewhere/else.toml").unwrap().hash, plan(SHORT).hash);
+}
+
+#[test]
+fn the_content_of_inputs_counts_and_their_place_does_not() {
+    let hash = |inputs: &[Input]| Hasher::new("table").inputs(inputs).finish();
+    let input = |role: &str, bytes: &[u8]| Input::new(role, bytes);
+    let one = [input("roughness", b"abc"), input("normal", b"d")];
+    assert_eq!(hash(&one), hash(&one.clone()));
+    for other in [
+        &[input("roughness", b"abd"), input("normal", b"d")][..],
+        &[input("roughness", b"ab"), input("normal", b"cd")],
+        &[input("normal", b"d"), input("roughness", b"abc")],
+        &[input("metallic", b"abc"), input("normal", b"d")],
+        &[input("roughness", b"abc")],
+        &[],
+    ] {
+        assert_ne!(hash(&one), hash(other), "{other:?}");
+    }
 }
 
 #[test]
 fn the_canonical_form_is_a_recipe_that_means_the_same() {
     let waived = "name = 'w'\n[[table]]\nkind = 'albedo'\nname = 'a'\nmodel = 'cook-torrance-1982'\n\
                   waive = [{ law = 'range', reason = 'r' }, { law = 'energy', reason = ' e ' }]\n";
-    for source in PRESETS.iter().map(|p| p.source).chain([SHORT, LONG, waived]) {
+    for source in PRESETS.iter().map(|p| p.source).chain([SHORT, AXES, LONG, waived]) {
         let first = plan(source);
-        let text = toml::to_string(&first.canonical).unwrap();
+        let text = toml::to_string(&first.canonical()).unwrap();
         let second = plan(&text);
-        assert_eq!(first.canonical.to_string(), second.canonical.to_string());
+        assert_eq!(first.canonical().to_string(), second.canonical().to_string());
         assert_eq!(first.hash, second.hash);
     }
 }
@@ -112,6 +164,6 @@ fn waivers_and_outputs_have_no_order() {
     let first = plan(&source(&format!("{a}, {b}"), "'exr:half', 'png:unorm16'"));
     let second = plan(&source(&format!("{b}, {a}"), "'png:unorm16', 'exr:half'"));
     assert_eq!(first.hash, second.hash);
-    let laws: Vec<&str> = first.tables[0].waivers.iter().map(|w| w.law.as_str()).collect();
+    let laws: Vec<&str> = first.tables[0].asked.waivers.iter().map(|w| w.law.as_str()).collect();
     assert_eq!(laws, ["range", "energy"]);
 }

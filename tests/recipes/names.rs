@@ -1,6 +1,7 @@
 //! A name has one meaning for a model: as a parameter and on an axis.
 
-use brdfbake::recipe::{Plan, parse};
+use brdfbake::plan::Plan;
+use brdfbake::recipe::parse;
 use brdfbake::tables::TABLES;
 
 /// The first value of a table.

@@ -28,7 +28,7 @@ fn every_preset_resolves() {
     for p in PRESETS {
         let plan = p.plan().unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(plan.name, p.id);
-        assert!(plan.tables.iter().all(|t| t.waivers.is_empty()), "{}: a preset breaks no law", p.id);
+        assert!(plan.tables.iter().all(|t| t.asked.waivers.is_empty()), "{}: a preset breaks no law", p.id);
         assert!(p.source.starts_with("# "), "{}: the first line says who needs it", p.id);
     }
     assert_eq!(PRESETS[0].id, "default");
@@ -39,7 +39,7 @@ fn every_preset_resolves() {
 fn default_tolerances_follow_the_finest_storage() {
     let tolerance = |id: &str, table: &str| {
         let plan = preset(id).unwrap().plan().unwrap();
-        plan.tables.iter().find(|t| t.name == table).unwrap().tolerance.to_bits()
+        plan.tables.iter().find(|t| t.name() == table).unwrap().tolerance.to_bits()
     };
     assert_eq!(tolerance("default", "ggx-dfg"), f64::to_bits(0.000_244_140_625));
     assert_eq!(tolerance("default", "kelemen-beckmann"), f64::to_bits(0.5 / 65535.0));
@@ -68,11 +68,11 @@ const E: &[(f64, f64, f64)] = &[
 #[test]
 fn the_albedo_of_the_default_preset_is_read_as_well_as_its_comment_says() {
     let plan = preset("default").unwrap().plan().unwrap();
-    let planned = plan.tables.iter().find(|t| t.name == "ggx-albedo").unwrap();
+    let planned = plan.tables.iter().find(|t| t.name() == "ggx-albedo").unwrap();
     let cancel = Cancel::new();
     let options = Options {
         tolerance: planned.tolerance,
-        on_miss: planned.on_miss,
+        on_miss: planned.asked.on_miss,
         cancel: &cancel,
         progress: &|_| {},
     };
@@ -101,7 +101,7 @@ fn a_minimal_recipe_is_as_good_as_the_default_preset() {
             let spec = &table.bound.spec;
             let minimal = format!("name = 'x'\n[[table]]\nkind = '{}'\nname = 't'\n", spec.kind.id);
             let minimal = brdfbake::recipe::parse(&minimal, "x.toml").unwrap();
-            assert_eq!(spec.grid, minimal.tables[0].bound.spec.grid, "{p}: {}", table.name);
+            assert_eq!(spec.grid, minimal.tables[0].bound.spec.grid, "{p}: {}", table.name());
         }
     }
 }
@@ -112,7 +112,8 @@ fn a_split_sum_of_kind_and_name_alone_reads_to_what_the_preset_says() {
         brdfbake::recipe::parse("name = 'x'\n[[table]]\nkind = 'dfg'\nname = 't'\n", "x.toml").unwrap();
     let planned = &plan.tables[0];
     let cancel = Cancel::default();
-    let options = Options { tolerance: 1e-5, on_miss: planned.on_miss, cancel: &cancel, progress: &|_| {} };
+    let options =
+        Options { tolerance: 1e-5, on_miss: planned.asked.on_miss, cancel: &cancel, progress: &|_| {} };
     let table = bake(&planned.bound, options).unwrap();
     let probe = Probe::new(&planned.bound, 1e-5, 1 << 14);
     let read = probe.measure(&table.values);

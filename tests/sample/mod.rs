@@ -5,7 +5,7 @@
     reason = "each test file uses a part of it; a test may fail by panicking"
 )]
 
-use brdfbake::encode::{EncodeInput, Encoder, Storage, quantise_table};
+use brdfbake::encode::{EncodeInput, Encoder, Label, Storage, quantise_table};
 use brdfbake::grid::provenance::{
     AxisRecord, Encoding, Integration, LawRecord, LawResult, RecipeId, Subject,
 };
@@ -98,7 +98,11 @@ pub(crate) fn file(encoder: &dyn Encoder, table: &Table, storage: Storage, p: &P
         errors: &table.errors,
         storage,
         options: &[],
-        provenance_json: &serde_json::to_string(p).unwrap(),
+        label: Label {
+            name: &p.name,
+            identity: &p.recipe.hash,
+            provenance_json: &serde_json::to_string(p).unwrap(),
+        },
         cancel: &brdfbake::cancel::Cancel::new(),
     };
     encoder.encode(&input).unwrap()

@@ -69,8 +69,8 @@ fn channels_that_make_a_layout_are_that_layout() {
     assert_eq!(named.hash, plan("channels = ['dfg.fc', 'dfg.total']").hash);
     let turned = plan("channels = ['dfg.total', 'dfg.fc']");
     assert_ne!(named.hash, turned.hash);
-    assert_eq!(turned.canonical["table"][0]["channels"][0], "dfg.total");
-    assert!(turned.canonical["table"][0].get("layout").is_none());
+    assert_eq!(turned.canonical()["table"][0]["channels"][0], "dfg.total");
+    assert!(turned.canonical()["table"][0].get("layout").is_none());
     assert_eq!(turned.tables[0].bound.spec.layout.title(), "channels dfg.total, dfg.fc");
 }
 

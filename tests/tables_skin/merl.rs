@@ -4,7 +4,7 @@ use brdfbake::cancel::Cancel;
 use brdfbake::encode::Storage;
 use brdfbake::models::{self, Params};
 use brdfbake::pipeline::{self, Settings, Silent};
-use brdfbake::recipe::{Output, Plan, TableRequest};
+use brdfbake::plan::{Output, Plan, TableRequest};
 use brdfbake::tables::merl::directions;
 use brdfbake::tables::spec::Request;
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
@@ -109,8 +109,8 @@ fn file(model: &str, params: &str) -> Vec<u8> {
         ..Request::default()
     };
     let table = TableRequest {
-        outputs: vec![Output::new("merl", Storage::Float.id())],
-        reconstruction: false,
+        outputs: Some(vec![Output::new(&brdfbake::encode::merl::Merl, Storage::Float)]),
+        reconstruction: Some(false),
         ..TableRequest::new("measured", request)
     };
     let plan = Plan::from_requests("merl", vec![table]).unwrap();
@@ -219,7 +219,7 @@ fn what_does_not_fit_is_refused() {
         errors: &[0.0; 64],
         options: &[],
         storage: Storage::Float,
-        provenance_json: "{}",
+        label: brdfbake::encode::Label::default(),
         cancel: &Cancel::new(),
     };
     let error = brdfbake::encode::encoder("merl").unwrap().encode(&input).unwrap_err().to_string();

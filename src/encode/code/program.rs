@@ -35,7 +35,7 @@ impl Program<'_> {
         let axes = input.grid.axes();
         let indices = indices(axes, false);
         Program {
-            name: identifier(input.provenance_json),
+            name: name_of(input.label.name),
             arguments: axes.iter().map(|a| a.quantity.id).collect(),
             indices,
             lengths: axes.iter().map(|a| a.len).collect(),
@@ -48,7 +48,7 @@ impl Program<'_> {
 
     /// The provenance, then what the arguments and results are: line comments, in ASCII.
     pub(super) fn comment(&self, input: &EncodeInput<'_>) -> String {
-        let mut text = format!("brdfbake {}\n{}_lookup:", input.provenance_json, self.name);
+        let mut text = format!("brdfbake {}\n{}_lookup:", input.label.provenance_json, self.name);
         for axis in input.grid.axes() {
             let [lo, hi] = axis.domain;
             let _ = write!(text, "\n  {} in [{lo}, {hi}]: {}", axis.quantity.id, axis.quantity.meaning);
@@ -159,12 +159,6 @@ pub(crate) fn coordinates(axes: &[Axis], clamped: bool) -> Vec<Expression> {
         axis.coordinate_of(Expression::name(axis.quantity.id), coupled)
     };
     axes.iter().map(one).collect()
-}
-
-/// The name of the table as an identifier of every language.
-fn identifier(provenance: &str) -> String {
-    let json: serde_json::Value = serde_json::from_str(provenance).unwrap_or_default();
-    name_of(json["name"].as_str().unwrap_or_default())
 }
 
 /// A name as an identifier of every language.

@@ -1,11 +1,13 @@
-//! A look at a few texels when a recipe is read: what is sure to stop a bake is said before it starts.
+//! A look at a few texels when a request is resolved: what is sure to stop a bake is said before it starts.
 //!
-//! Two things cannot be read off a recipe and yet are known before the work: that a model which does not claim a law breaks it on
+//! Two things cannot be read off a request and yet are known before the work: that a model which does not claim a law breaks it on
 //! these axes, and that values which have no bound of their own are too large for the storage. A handful of texels, those
 //! of the corners and some between them, tells.
 
-use super::fault::{Fault, Faults};
-use super::plan::PlannedTable;
+use super::fault::Fault;
+use super::faults::Faults;
+use super::place::Path;
+use super::table::PlannedTable;
 use crate::encode::Storage;
 use crate::grid::layout::{Point, combination};
 use crate::math::figures::significant;
@@ -23,13 +25,13 @@ const COARSE: f64 = 1e-3;
 
 /// Looks at a table that is resolved; a fault is that of the model, or of an output, if they are `listed`. Laws are looked at where
 /// the axes are the kind's own: on axes that somebody chose, a law that breaks is a finding with all of its texels.
-pub(super) fn look(path: &str, [listed, own_axes]: [bool; 2], planned: &PlannedTable, faults: &mut Faults) {
+pub(super) fn look(path: &Path, [listed, own_axes]: [bool; 2], planned: &PlannedTable, faults: &mut Faults) {
     if let Some(fault) = own_axes.then(|| unclaimed(planned)).flatten() {
-        faults.value(format!("{path}.model"), fault);
+        faults.value(path.key("model"), fault);
         return;
     }
     if let Some((output, fault)) = too_large(planned) {
-        let path = if listed { format!("{path}.outputs[{output}]") } else { path.to_owned() };
+        let path = if listed { path.key("outputs").index(output) } else { path.clone() };
         faults.value(path, fault);
     }
 }
@@ -59,7 +61,8 @@ fn unclaimed(planned: &PlannedTable) -> Option<Fault> {
     if info.laws.passive && info.laws.reciprocal {
         return None;
     }
-    let checked = |law: &str| spec.kind.laws.contains(&law) && planned.waivers.iter().all(|w| w.law != law);
+    let checked =
+        |law: &str| spec.kind.laws.contains(&law) && planned.asked.waivers.iter().all(|w| w.law != law);
     let sweep = Sweep::new(spec, matches!(spec.kind.model, ModelUse::Split(_))).ok()?;
     let fault = |laws: &[&'static str], what: String| {
         let laws: Vec<&'static str> = laws.iter().copied().filter(|law| checked(law)).collect();
@@ -145,9 +148,8 @@ fn too_large(planned: &PlannedTable) -> Option<(usize, Fault)> {
         let ends = channels.iter().flat_map(|c| c.range.map(|end| (end, c.range)));
         !storage.is_bounded() && ends.into_iter().any(|(end, range)| storage.quantise(end, range).is_err())
     };
-    let storages = planned.outputs.iter().enumerate();
-    let storages: Vec<(usize, Storage)> =
-        storages.filter_map(|(i, o)| Some((i, Storage::find(&o.storage).filter(narrow)?))).collect();
+    let storages = planned.outputs.iter().map(|o| o.storage).enumerate();
+    let storages: Vec<(usize, Storage)> = storages.filter(|(_, storage)| narrow(storage)).collect();
     if storages.is_empty() {
         return None;
     }

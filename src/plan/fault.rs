@@ -1,11 +1,12 @@
-//! What can be wrong with a recipe: one enum, whose variants carry what was given and what is allowed.
+//! What can be wrong with a request: one enum, whose variants carry what was given and what is allowed.
 
 use crate::grid::{AxisError, GridError};
 use crate::math::figures::exact as number;
+use crate::math::nearest::nearest;
 use crate::models::ParamError;
 use crate::tables::BindError;
 
-/// A fault of a recipe. `Display` says what is wrong and what was given; [`Fault::allowed`] and [`Fault::remedy`] go on.
+/// A fault of a request, or of the text that it was read from. `Display` says what is wrong and what was given; [`Fault::allowed`] and [`Fault::remedy`] go on.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Fault {
@@ -15,7 +16,7 @@ pub enum Fault {
     /// Not UTF-8.
     #[error("the file is not UTF-8 text")]
     NotUtf8,
-    /// Larger than [`MAX_BYTES`](super::MAX_BYTES).
+    /// Larger than [`MAX_BYTES`](crate::recipe::MAX_BYTES).
     #[error("the file has {bytes} bytes or more")]
     FileTooLarge {
         /// Size, as far as it was read.
@@ -342,7 +343,7 @@ fn hint(suggestion: Option<&str>, allowed: &str) -> String {
 }
 
 /// Given text in a message: control characters escaped, cut after 64 characters.
-pub(super) fn show(text: &str) -> String {
+pub(crate) fn show(text: &str) -> String {
     const LONGEST: usize = 64;
     let escaped = |c: char| if matches!(c, '"' | '\'' | '\\') { vec![c] } else { c.escape_debug().collect() };
     let mut out: String = text.chars().take(LONGEST).flat_map(escaped).collect();
@@ -352,48 +353,20 @@ pub(super) fn show(text: &str) -> String {
     out
 }
 
-/// Where a fault lies: the path of a key, and whether the key itself or its value is at fault.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Place {
-    pub(super) path: String,
-    pub(super) key: bool,
+/// A word that is not among those offered.
+pub(crate) fn unknown_word<'a>(what: &str, got: &str, words: impl Iterator<Item = &'a str> + Clone) -> Fault {
+    Fault::Word {
+        what: what.to_owned(),
+        got: show(got),
+        allowed: words.clone().collect::<Vec<_>>().join(", "),
+        suggestion: slip(got, words),
+    }
 }
 
-/// The faults found so far.
-#[derive(Debug, Default)]
-pub(super) struct Faults {
-    pub(super) list: Vec<(Place, Fault)>,
-    /// Faults that were not kept.
-    pub(super) dropped: usize,
-}
-
-/// Faults that are kept; a file of a million unknown keys needs no more.
-const KEPT: usize = 10_000;
-
-impl Faults {
-    /// A fault of the value at `path`; of the section header if there is no such value.
-    pub(super) fn value(&mut self, path: impl Into<String>, fault: Fault) {
-        self.push(Place { path: path.into(), key: false }, fault);
+/// The nearest word, if `got` is short enough to be a slip of one.
+pub(crate) fn slip<'a>(got: &str, words: impl Iterator<Item = &'a str>) -> Option<String> {
+    if got.len() > 64 {
+        return None;
     }
-
-    /// A fault of the key at `path`.
-    pub(super) fn key(&mut self, path: impl Into<String>, fault: Fault) {
-        self.push(Place { path: path.into(), key: true }, fault);
-    }
-
-    fn push(&mut self, place: Place, fault: Fault) {
-        if self.list.len() < KEPT {
-            self.list.push((place, fault));
-        } else {
-            self.dropped += 1;
-        }
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.list.is_empty()
-    }
-
-    pub(super) fn len(&self) -> usize {
-        self.list.len()
-    }
+    nearest(got, words).map(str::to_owned)
 }

@@ -1,8 +1,12 @@
 //! Names that become file names: the same on every system.
 
-use super::document::Entry;
-use super::fault::{Fault, Faults, show};
-use crate::encode::{self, Encoder};
+use super::fault::{Fault, show};
+use super::faults::Faults;
+use super::output::{self, Output};
+use super::place::Path;
+use super::request::{Draft, TableRequest};
+use crate::encode::Encoder;
+use std::collections::HashSet;
 
 /// Most characters of a name.
 const LONGEST: usize = 64;
@@ -10,8 +14,8 @@ const LONGEST: usize = 64;
 /// Names that Windows keeps for devices, with any extension and in any case.
 const DEVICES: &[&str] = &["con", "prn", "aux", "nul"];
 
-/// What the pipeline writes beside the tables.
-const MANIFEST: &str = "manifest.json";
+/// File name of the manifest, which is written beside the tables.
+pub const MANIFEST: &str = "manifest.json";
 
 /// What is wrong with the name of a table, if anything: it becomes the stem of file names.
 pub(super) fn table(name: &str) -> Option<Fault> {
@@ -20,53 +24,97 @@ pub(super) fn table(name: &str) -> Option<Fault> {
 
 /// Checks the file names that tables give themselves: portable, one output each, and no two tables in one file unless
 /// the container takes them one behind the other.
-pub(super) fn files(entries: &[Entry], faults: &mut Faults) {
-    for (i, entry) in entries.iter().enumerate() {
-        let Some(file) = &entry.file else { continue };
-        let path = format!("{}.file", entry.path);
+pub(super) fn files(drafts: &[Draft], faults: &mut Faults) {
+    for (i, draft) in drafts.iter().enumerate() {
+        let Some(file) = &draft.request.file else { continue };
         let fault = portable("file name", file).or_else(|| {
             let stem = file.rsplit_once('.').map_or(file.as_str(), |(stem, _)| stem);
             let manifest =
                 file.eq_ignore_ascii_case(MANIFEST).then(|| "the manifest has this name".to_owned());
             let why = manifest.or_else(|| {
-                entries.iter().enumerate().filter(|(j, _)| i != *j).find_map(|(j, other)| match &other.file {
-                    Some(theirs) if j < i => shared(entry, file, other, theirs),
+                let others = drafts.iter().enumerate().filter(|(j, _)| i != *j);
+                others.into_iter().find_map(|(j, other)| match &other.request.file {
+                    Some(theirs) if j < i => shared(draft, file, other, theirs),
                     Some(_) => None,
-                    None => (other.name.as_deref()?.eq_ignore_ascii_case(stem))
+                    None => (!other.holes.name && other.request.name.eq_ignore_ascii_case(stem))
                         .then(|| "a table of this name writes files of its own".to_owned()),
                 })
             });
             why.map(|why| Fault::Twice { what: "file name", got: show(file), why })
         });
         if let Some(fault) = fault {
-            faults.value(path, fault);
+            faults.value(Path::table(i).key("file"), fault);
         }
     }
 }
 
+/// Checks the name of a table, which is `taken` by it.
+pub(super) fn check(draft: &Draft, path: &Path, taken: &mut HashSet<String>, faults: &mut Faults) {
+    if draft.holes.name {
+        return;
+    }
+    let name = &draft.request.name;
+    if let Some(fault) = table(name) {
+        faults.value(path.key("name"), fault);
+        return;
+    }
+    let stems = stems(name, draft.request.outputs.as_deref().unwrap_or_default());
+    if let Some(stem) = stems.iter().find(|stem| taken.contains(*stem)) {
+        let why = "file names must differ by more than case".to_owned();
+        faults.value(path.key("name"), Fault::Twice { what: "table name", got: stem.clone(), why });
+    }
+    taken.extend(stems);
+}
+
+/// What a table takes for itself: its name, and, with two storages in one container, whose files are told apart by it,
+/// `name.storage`.
+fn stems(name: &str, outputs: &[Output]) -> Vec<String> {
+    let mut stems = vec![name.to_ascii_lowercase()];
+    for output in outputs {
+        if outputs.iter().any(|o| o.is_in(output) && o.storage != output.storage) {
+            stems.push(format!("{name}.{}", output.storage.id()).to_ascii_lowercase());
+        }
+    }
+    stems.sort();
+    stems.dedup();
+    stems
+}
+
+/// File names of a table, one an output: `name.exr`, or `name.float.exr` where a container is used twice; or the one that
+/// it gives itself.
+pub(super) fn of_outputs(request: &TableRequest, outputs: &[Output]) -> Vec<String> {
+    if let Some(file) = &request.file {
+        return vec![file.clone()];
+    }
+    let one = |o: &Output| {
+        let (name, extension) = (&request.name, o.encoder.extension());
+        if outputs.iter().filter(|other| other.is_in(o)).count() > 1 {
+            format!("{name}.{}.{extension}", o.storage.id())
+        } else {
+            format!("{name}.{extension}")
+        }
+    };
+    outputs.iter().map(one).collect()
+}
+
 /// Why two tables cannot name these files.
-fn shared(a: &Entry, file: &str, b: &Entry, theirs: &str) -> Option<String> {
+fn shared(a: &Draft, file: &str, b: &Draft, theirs: &str) -> Option<String> {
     if !file.eq_ignore_ascii_case(theirs) {
         return None;
     }
     if file != theirs {
         return Some("file names must differ by more than case".to_owned());
     }
-    let encoders = |e: &Entry| -> Vec<&'static dyn Encoder> {
-        let named = e.outputs.iter().flatten().flatten();
-        let named: Vec<_> = named.filter_map(|o| encode::encoder(&o.container)).collect();
-        let default = e.outputs.is_none().then(|| encode::encoder(&super::outputs::default().container));
-        named.into_iter().chain(default.flatten()).collect()
-    };
-    let all = [encoders(a), encoders(b)];
-    let whole = |ok: fn(&dyn Encoder) -> bool| all.iter().all(|l| !l.is_empty() && l.iter().all(|e| ok(*e)));
+    let all = [a, b].map(|draft| output::listed(&draft.request));
+    let whole =
+        |ok: fn(&dyn Encoder) -> bool| all.iter().all(|l| !l.is_empty() && l.iter().all(|o| ok(o.encoder)));
     match () {
         () if whole(|e| e.is_bare()) => None,
         () if !whole(|e| e.joins()) => Some(
             "only containers without a header (raw, text) hold one table behind the other, ktx2 in layers and exr in parts"
                 .to_owned(),
         ),
-        () if a.outputs != b.outputs || lengths(a) != lengths(b) => {
+        () if a.request.outputs != b.request.outputs || lengths(a) != lengths(b) => {
             Some("the layers and parts of a file have one size, storage and options".to_owned())
         }
         () => None,
@@ -74,8 +122,8 @@ fn shared(a: &Entry, file: &str, b: &Entry, theirs: &str) -> Option<String> {
 }
 
 /// Lengths of the axes, where they are given.
-fn lengths(entry: &Entry) -> Vec<Option<usize>> {
-    entry.axes.iter().flatten().map(|a| a.as_ref().map(|a| a.len)).collect()
+fn lengths(draft: &Draft) -> Vec<usize> {
+    draft.request.request.axes.iter().flatten().map(|a| a.len).collect()
 }
 
 fn portable(what: &'static str, name: &str) -> Option<Fault> {

@@ -1,10 +1,10 @@
-//! Binding a table of a recipe, with all its faults and not only the first: each fault is reported at its key, the
-//! request is repaired there, and bound again.
+//! Binding a request, with all its faults and not only the first: each fault is reported at its key, the request is
+//! repaired there, and bound again.
 
-use super::document::Entry;
-use super::fault::{Fault, Faults};
-use super::read_axis::canonical;
-use super::span::join;
+use super::fault::Fault;
+use super::faults::Faults;
+use super::place::Path;
+use super::request::Draft;
 use crate::grid::{Axis, AxisError, GridError, Warp};
 use crate::math::figures::exact as number;
 use crate::models::{self, ModelInfo, Param, ParamError};
@@ -16,67 +16,66 @@ use serde_json::Map;
 const REPAIRS: usize = 256;
 
 struct Binder<'a> {
-    entry: &'a Entry,
+    asked: &'a Request,
+    path: &'a Path,
+    /// The request as it is repaired.
     request: Request,
-    /// For each axis of the request, its number in the recipe.
+    /// For each axis of that, its number as it was asked for.
     numbers: Vec<usize>,
-    /// Canonical parameter id and the key in the recipe.
+    /// Canonical parameter id and the key that was given.
     keys: Vec<(String, String)>,
 }
 
 /// Binds a table. None if it has a fault.
-pub(super) fn bind(entry: &Entry, faults: &mut Faults) -> Option<Bound> {
+pub(super) fn bind(draft: &Draft, path: &Path, faults: &mut Faults) -> Option<Bound> {
     let before = faults.len();
-    let kind = entry.kind.as_deref().and_then(tables::find);
-    let readable = entry.axes.iter().flatten().all(Option::is_some);
-    if entry.kind.is_none() || kind.is_none() || !readable {
-        check_axes_alone(entry, faults);
+    let asked = &draft.request.request;
+    let kind = if draft.holes.kind { None } else { tables::find(&asked.kind) };
+    let readable = !draft.holes.axes;
+    if kind.is_none() || !readable {
+        check_axes_alone(asked, path, faults);
     }
-    let mut binder = Binder::new(entry, kind, faults)?;
+    if draft.holes.kind {
+        return None;
+    }
+    let mut binder = Binder::new(asked, path, kind, faults);
     if !readable {
         // the kind's own axes stand in, so that layout, model and parameters are checked
         binder.request.axes = None;
     }
     let bound = binder.run(readable, faults)?;
-    check_swept(entry, &bound, faults);
-    check_split(entry, &bound, &binder.keys, faults);
+    check_swept(&bound, path, faults);
+    check_split(&bound, path, &binder.keys, faults);
     (readable && faults.len() == before).then_some(bound)
 }
 
 impl<'a> Binder<'a> {
-    fn new(entry: &'a Entry, kind: Option<&'static TableInfo>, faults: &mut Faults) -> Option<Binder<'a>> {
-        let mut request = Request {
-            kind: entry.kind.clone()?,
-            layout: entry.layout.clone(),
-            channels: entry.channels.as_ref().map(|c| c.iter().flatten().cloned().collect()),
-            model: entry.model.clone(),
-            params: Map::new(),
-            axes: None,
-        };
-        let declared: Vec<&Param> = kind.map(|k| declared(k, entry)).unwrap_or_default();
+    fn new(
+        asked: &'a Request,
+        path: &'a Path,
+        kind: Option<&'static TableInfo>,
+        faults: &mut Faults,
+    ) -> Binder<'a> {
+        let mut request = Request { params: Map::new(), axes: None, ..asked.clone() };
+        let declared: Vec<&Param> = kind.map(|k| declared(k, asked)).unwrap_or_default();
         let mut keys: Vec<(String, String)> = Vec::new();
-        for (key, value) in &entry.params {
+        for (key, value) in &asked.params {
             let id = declared.iter().find(|p| p.is_called(key));
             let id = id.map_or_else(|| key.clone(), |p| p.id.to_owned());
             if let Some((_, other)) = keys.iter().find(|(k, _)| *k == id) {
                 let why = format!("`{other}` and `{key}` are the same");
-                let path = join(&format!("{}.params", entry.path), key);
-                faults.key(path, Fault::Twice { what: "parameter", got: id.clone(), why });
+                let fault = Fault::Twice { what: "parameter", got: id.clone(), why };
+                faults.key(path.key("params").key(key), fault);
             }
             request.params.insert(id.clone(), value.clone());
             keys.push((id, key.clone()));
         }
-        let mut numbers = Vec::new();
-        if let Some(axes) = &entry.axes {
-            let known = axes.iter().enumerate().filter_map(|(i, a)| Some((i, canonical(a.clone()?))));
-            let (n, axes): (Vec<usize>, Vec<Axis>) = known.unzip();
-            numbers = n;
-            request.axes = Some(axes);
-        }
-        Some(Binder { entry, request, numbers, keys })
+        let numbers = (0..asked.axes.as_ref().map_or(0, Vec::len)).collect();
+        request.axes = asked.axes.as_ref().map(|axes| axes.iter().cloned().map(canonical).collect());
+        Binder { asked, path, request, numbers, keys }
     }
 
-    /// Binds, reporting and repairing faults on the way. `axes`: are they the recipe's?
+    /// Binds, reporting and repairing faults on the way. `axes`: are they those that were asked for?
     fn run(&mut self, axes: bool, faults: &mut Faults) -> Option<Bound> {
         for _ in 0..REPAIRS {
             let error = match self.request.bind() {
@@ -96,6 +95,11 @@ impl<'a> Binder<'a> {
             }
             self.report(&error, faults);
             if !self.repair(&error) {
+                if axes && matches!(error, BindError::Unknown { what: "model", .. } | BindError::Model { .. })
+                {
+                    // the axes are not looked at before there is a model
+                    check_axes_alone(self.asked, self.path, faults);
+                }
                 return None;
             }
         }
@@ -103,7 +107,7 @@ impl<'a> Binder<'a> {
     }
 
     fn report(&self, error: &BindError, faults: &mut Faults) {
-        let at = |key: &str| join(&self.entry.path, key);
+        let at = |key: &str| self.path.key(key);
         let fault = Fault::Bind(error.clone());
         match error {
             BindError::Unknown { what: "table", .. } => faults.value(at("kind"), fault),
@@ -124,40 +128,40 @@ impl<'a> Binder<'a> {
             BindError::Grid(e) => faults.value(self.grid_path(e), fault),
             BindError::MissingAxis { .. } => faults.value(at("axis"), fault),
             BindError::IdleAxis { axis, .. } | BindError::OneParam { axes: [_, axis], .. } => {
-                faults.value(self.axis_path(axis, ".id"), fault);
+                faults.value(self.axis_path(axis, "id"), fault);
             }
             BindError::Both { key, .. } => faults.key(self.param(key), fault),
         }
     }
 
-    /// Path of a parameter under the key that the recipe uses for it.
-    fn param(&self, id: &str) -> String {
+    /// Path of a parameter under the key that was given for it.
+    fn param(&self, id: &str) -> Path {
         let key = self.keys.iter().find(|(k, _)| k == id).map_or(id, |(_, key)| key);
-        join(&join(&self.entry.path, "params"), key)
+        self.path.key("params").key(key)
     }
 
     /// Path of the first, second, ... entry of a channel.
-    fn channel_path(&self, id: &str, occurrence: usize) -> String {
-        let listed = self.entry.channels.iter().flatten().enumerate();
-        let path = format!("{}.channels", self.entry.path);
-        match listed.filter(|(_, c)| c.as_deref() == Some(id)).nth(occurrence) {
-            Some((i, _)) => format!("{path}[{i}]"),
+    fn channel_path(&self, id: &str, occurrence: usize) -> Path {
+        let listed = self.asked.channels.iter().flatten().enumerate();
+        let path = self.path.key("channels");
+        match listed.filter(|(_, c)| *c == id).nth(occurrence) {
+            Some((i, _)) => path.index(i),
             None => path,
         }
     }
 
-    fn grid_path(&self, error: &GridError) -> String {
+    fn grid_path(&self, error: &GridError) -> Path {
         match error {
             GridError::Axis(e) => self.axis_path(axis_id(e), axis_key(e)),
             GridError::Twice(base) => {
                 let mut same = self.axes().iter().enumerate().filter(|(_, a)| a.quantity.base_id() == *base);
-                self.axis_number_path(same.nth(1).map(|(i, _)| i), ".id")
+                self.axis_number_path(same.nth(1).map(|(i, _)| i), "id")
             }
-            GridError::Coupling { id, .. } | GridError::Chain(id) => self.axis_path(id, ".warp"),
-            GridError::Count(_) => join(&self.entry.path, "axis"),
+            GridError::Coupling { id, .. } | GridError::Chain(id) => self.axis_path(id, "warp"),
+            GridError::Count(_) => self.path.key("axis"),
             GridError::Size(_) => {
                 let longest = self.axes().iter().enumerate().max_by_key(|(_, a)| a.len).map(|(i, _)| i);
-                self.axis_number_path(longest, ".length")
+                self.axis_number_path(longest, "length")
             }
         }
     }
@@ -170,14 +174,15 @@ impl<'a> Binder<'a> {
         self.axes().iter().position(|a| a.quantity.id == id)
     }
 
-    fn axis_path(&self, id: &str, key: &str) -> String {
+    fn axis_path(&self, id: &str, key: &str) -> Path {
         self.axis_number_path(self.find(id), key)
     }
 
-    fn axis_number_path(&self, i: Option<usize>, key: &str) -> String {
+    fn axis_number_path(&self, i: Option<usize>, key: &str) -> Path {
+        let path = self.path.key("axis");
         match i.and_then(|i| self.numbers.get(i)) {
-            Some(n) => format!("{}.axis[{n}]{key}", self.entry.path),
-            None => join(&self.entry.path, "axis"),
+            Some(n) => path.index(*n).key(key),
+            None => path,
         }
     }
 
@@ -268,12 +273,12 @@ impl<'a> Binder<'a> {
     }
 }
 
-/// Parameters of the kind and of the model that the entry names or the kind takes by itself.
-fn declared(kind: &'static TableInfo, entry: &Entry) -> Vec<&'static Param> {
+/// Parameters of the kind and of the model that the request names or the kind takes by itself.
+fn declared(kind: &'static TableInfo, asked: &Request) -> Vec<&'static Param> {
     let model: Option<&'static ModelInfo> = match kind.model {
         ModelUse::None => None,
         ModelUse::Any(own) | ModelUse::Split(own) => {
-            models::find(entry.model.as_deref().unwrap_or(own)).map(|(info, _)| info)
+            models::find(asked.model.as_deref().unwrap_or(own)).map(|(info, _)| info)
         }
     };
     kind.params.iter().chain(model.iter().flat_map(|m| m.params)).collect()
@@ -291,11 +296,11 @@ fn axis_id(error: &AxisError) -> &'static str {
 
 fn axis_key(error: &AxisError) -> &'static str {
     match error {
-        AxisError::Domain { .. } => ".domain",
-        AxisError::Length { .. } => ".length",
-        AxisError::Warp { .. } => ".warp",
-        AxisError::Clamp { .. } => ".clamp",
-        AxisError::Offset { .. } => ".offset",
+        AxisError::Domain { .. } => "domain",
+        AxisError::Length { .. } => "length",
+        AxisError::Warp { .. } => "warp",
+        AxisError::Clamp { .. } => "clamp",
+        AxisError::Offset { .. } => "offset",
     }
 }
 
@@ -312,22 +317,40 @@ fn repair_axis(axis: &mut Axis, error: &AxisError) -> bool {
 }
 
 /// Checks each axis that could be read, where the table as a whole cannot be bound.
-fn check_axes_alone(entry: &Entry, faults: &mut Faults) {
-    for (i, axis) in entry.axes.iter().flatten().enumerate() {
-        let Some(mut axis) = axis.clone() else { continue };
+fn check_axes_alone(asked: &Request, path: &Path, faults: &mut Faults) {
+    for (i, axis) in asked.axes.iter().flatten().enumerate() {
+        let mut axis = axis.clone();
         while let Err(error) = axis.check() {
-            let path = format!("{}.axis[{i}]{}", entry.path, axis_key(&error));
+            let path = path.key("axis").index(i).key(axis_key(&error));
             repair_axis(&mut axis, &error);
             faults.value(path, Fault::Bind(BindError::Grid(GridError::Axis(error))));
         }
     }
 }
 
+/// The axis in its one canonical form: equal maps are equal values.
+fn canonical(mut axis: Axis) -> Axis {
+    let is = |a: f64, b: f64| (a - b).abs() == 0.0;
+    if let Warp::Power(p) | Warp::OneMinusPower(p) = axis.warp
+        && is(p, 1.0)
+    {
+        axis.warp = Warp::Linear;
+    }
+    if axis.clamp.is_some_and(|[a, b]| is(a, axis.domain[0]) && is(b, axis.domain[1])) {
+        axis.clamp = None;
+    }
+    // -0 and 0 are the same place
+    axis.offset += 0.0;
+    axis.domain = axis.domain.map(|v| v + 0.0);
+    axis.clamp = axis.clamp.map(|c| c.map(|v| v + 0.0));
+    axis
+}
+
 /// Part of a value by which a map and its inverse may miss.
 const ROUNDING: f64 = 1e-12;
 
 /// An axis that sweeps a parameter must stay in the range of the parameter. All is said in the quantity of the axis.
-fn check_swept(entry: &Entry, bound: &Bound, faults: &mut Faults) {
+fn check_swept(bound: &Bound, path: &Path, faults: &mut Faults) {
     let spec = &bound.spec;
     let model = spec.model.as_ref().map(|(info, _)| (info.id, info.params));
     for (i, axis) in spec.grid.axes().iter().enumerate() {
@@ -347,21 +370,21 @@ fn check_swept(entry: &Entry, bound: &Bound, faults: &mut Faults) {
                 let allowed = [least.max(lo), most.min(hi)];
                 let fault = Fault::SweptRange { axis: quantity.id, got, owner, allowed, map };
                 let key = if axis.clamp.is_some() { "clamp" } else { "domain" };
-                faults.value(format!("{}.axis[{i}].{key}", entry.path), fault);
+                faults.value(path.key("axis").index(i).key(key), fault);
             }
         }
     }
 }
 
 /// A table that splits the Fresnel factor off sets it to 1: another value would be ignored in silence.
-fn check_split(entry: &Entry, bound: &Bound, keys: &[(String, String)], faults: &mut Faults) {
+fn check_split(bound: &Bound, path: &Path, keys: &[(String, String)], faults: &mut Faults) {
     let kind = bound.spec.kind;
     let (ModelUse::Split(_), Some((_, params))) = (kind.model, &bound.spec.model) else { return };
     for (id, key) in keys {
         let Some(id) = ["f0", "f90"].into_iter().find(|f| f == id) else { continue };
         let got = params.number(id);
         if (got - 1.0).abs() > 0.0 {
-            let path = join(&join(&entry.path, "params"), key);
+            let path = path.key("params").key(key);
             faults.value(path, Fault::SplitFresnel { kind: kind.id, key: id, got });
         }
     }

@@ -1,0 +1,222 @@
+//! The text of a plan reads back to the same plan: of every preset, of every engine, and of a thousand random plans.
+
+use brdfbake::encode::ENCODERS;
+use brdfbake::grid::fit::Texels;
+use brdfbake::grid::provenance::Waiver;
+use brdfbake::grid::{Axis, Direction, Texel, Warp};
+use brdfbake::models::{Kind, MODELS, Param};
+use brdfbake::plan::{Output, Plan, Sizing, TableRequest};
+use brdfbake::recipe::{ENGINES, PRESETS, parse, text};
+use brdfbake::tables::driver::OnMiss;
+use brdfbake::tables::spec::Request;
+use brdfbake::tables::{Mix, ModelUse, TABLES};
+use std::collections::BTreeSet;
+
+fn assert_reads_back(what: &str, plan: &Plan) {
+    let written = text(&plan.name, &plan.requests());
+    let again = parse(&written, "again.toml").unwrap_or_else(|e| panic!("{what}: {e}\n{written}"));
+    assert_eq!(again.canonical(), plan.canonical(), "{what}\n{written}");
+    assert_eq!(again.hash, plan.hash, "{what}\n{written}");
+    for (a, b) in again.tables.iter().zip(&plan.tables) {
+        assert_eq!(a.identity, b.identity, "{what}\n{written}");
+        assert_eq!(format!("{:?}", a.bound.spec), format!("{:?}", b.bound.spec), "{what}\n{written}");
+        assert_eq!((&a.outputs, a.files()), (&b.outputs, b.files()), "{what}\n{written}");
+        assert_eq!(a.tolerance.to_bits(), b.tolerance.to_bits(), "{what}\n{written}");
+    }
+    assert_eq!(text(&again.name, &again.requests()), written, "{what}");
+}
+
+#[test]
+fn presets_and_engines_read_back() {
+    for p in PRESETS {
+        assert_reads_back(p.id, &p.plan().unwrap());
+    }
+    for e in ENGINES {
+        assert_reads_back(e.id, &e.plan().unwrap());
+    }
+}
+
+/// SplitMix64: the same plans on every machine.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+    fn below(&mut self, n: usize) -> usize {
+        usize::try_from(self.next() % n as u64).unwrap()
+    }
+    fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+    fn one_in(&mut self, n: usize) -> bool {
+        self.below(n) == 0
+    }
+    fn of<T: Clone>(&mut self, all: &[T]) -> T {
+        all[self.below(all.len())].clone()
+    }
+    fn between(&mut self, [lo, hi]: [f64; 2]) -> f64 {
+        lo + (hi - lo) * self.unit()
+    }
+}
+
+const TEXTS: &[&str] = &["plain", "\"quoted\" \\ and 'more'", "two\nlines\tand a tab", "µ₀ → 1, \u{7f}\u{1}"];
+
+fn param(random: &mut Random, p: &Param) -> Option<serde_json::Value> {
+    match p.kind {
+        Kind::Number { min, max, .. } => Some(random.between([min, max.min(min + 10.0)]).into()),
+        Kind::Choice(words) => Some(random.of(words).into()),
+        Kind::Rows { .. } => None,
+    }
+}
+
+fn axis(random: &mut Random, mut axis: Axis) -> Axis {
+    axis.len = 2 + random.below(30);
+    let [lo, hi] = axis.domain;
+    if random.one_in(3) {
+        axis.domain = [lo + 0.25 * (hi - lo) * random.unit(), hi - 0.25 * (hi - lo) * random.unit()];
+    }
+    if random.one_in(3) {
+        let [lo, hi] = axis.domain;
+        axis.clamp = Some([lo + 0.1 * (hi - lo) * random.unit(), hi]);
+    }
+    if random.one_in(2) {
+        axis.warp = random.of(&[
+            Warp::Linear,
+            Warp::Power(0.5),
+            Warp::Power(1.0 / 3.0),
+            Warp::OneMinusPower(0.7),
+            Warp::Coupled { to: "alpha".into(), power: 2.5, scale: 1.0 / 3.0, exponent: 0.5 },
+        ]);
+    }
+    if random.one_in(3) {
+        axis.texel = random.of(&[Texel::Center, Texel::Endpoint]);
+        axis.direction = random.of(&[Direction::Ascending, Direction::Descending]);
+        axis.offset = random.between([-1.0, 1.0]);
+    }
+    axis
+}
+
+fn output(random: &mut Random) -> Output {
+    let encoder = random.of(ENCODERS);
+    let mut output = Output::new(encoder, random.of(encoder.storages()));
+    for option in encoder.options() {
+        if random.one_in(4) {
+            output = output.with(*option);
+        }
+    }
+    output
+}
+
+/// A table as somebody might ask for it; many are refused.
+fn table(random: &mut Random, name: &str) -> TableRequest {
+    let kind = random.of(TABLES);
+    let mut request = Request { kind: kind.id.to_owned(), ..Request::default() };
+    let model = match kind.model {
+        ModelUse::None => None,
+        ModelUse::Any(own) | ModelUse::Split(own) if random.one_in(2) => {
+            MODELS.iter().find(|m| m.id == own).copied()
+        }
+        _ => Some(random.of(MODELS)),
+    };
+    request.model = model.map(|m| m.id.to_owned());
+    match kind.mix {
+        Mix::Free(_) if random.one_in(2) => {
+            let pool = kind.pool();
+            let channels: BTreeSet<&str> = (0..3).map(|_| random.of(&pool).id).collect();
+            request.channels = Some(channels.into_iter().map(str::to_owned).collect());
+        }
+        _ => request.layout = Some(random.of(kind.layouts).id.to_owned()),
+    }
+    for p in kind.params.iter().chain(model.iter().flat_map(|m| m.params)) {
+        if random.one_in(4)
+            && let Some(value) = param(random, p)
+        {
+            request.params.insert(p.id.to_owned(), value);
+        }
+    }
+    if random.one_in(2)
+        && let Ok(bound) = request.bind()
+    {
+        request.axes = Some(bound.spec.grid.axes().iter().map(|a| axis(random, a.clone())).collect());
+    }
+    let mut asked = TableRequest::new(name, request);
+    asked.outputs = Some((0..1 + random.below(2)).map(|_| output(random)).collect());
+    if random.one_in(2) {
+        asked.tolerance = Some(libm::pow(10.0, -1.0 - 5.0 * random.unit()));
+    }
+    asked.on_miss = random.of(&OnMiss::ALL);
+    asked.reconstruction = random.of(&[None, Some(false), Some(true)]);
+    asked.texels = random.of(&Texels::ALL);
+    if random.one_in(3) {
+        let axes = asked.request.axes.as_ref().map_or(0, Vec::len);
+        asked.size = Some(Sizing {
+            error: libm::pow(10.0, -1.0 - 4.0 * random.unit()),
+            practical: random.one_in(2),
+            warps: random.one_in(2),
+            longest: 8 + random.below(2000),
+            axes: (0..axes).filter(|_| random.one_in(2)).collect(),
+        });
+    }
+    for law in kind.laws {
+        if random.one_in(3) {
+            asked.waivers.push(Waiver { law: (*law).to_owned(), reason: random.of(TEXTS).to_owned() });
+        }
+    }
+    if random.one_in(3) {
+        asked.file = Some(format!("{name}.bin"));
+        asked.before = random.one_in(2).then(|| random.of(TEXTS).to_owned());
+        asked.after = random.one_in(2).then(|| random.of(TEXTS).to_owned());
+    }
+    asked
+}
+
+#[test]
+fn a_thousand_random_plans_read_back() {
+    let mut random = Random(20_260_727);
+    let (mut plans, mut tries) = (0, 0);
+    let mut kinds = BTreeSet::new();
+    let mut keys = BTreeSet::new();
+    while plans < 1000 {
+        tries += 1;
+        assert!(tries < 100_000, "{plans} plans of {tries}");
+        let name = random.of(&["a", "b-2", "mine"]);
+        let tables = (0..1 + random.below(2)).map(|i| table(&mut random, &format!("T_{i}"))).collect();
+        let Ok(plan) = Plan::from_requests(name, tables) else { continue };
+        plans += 1;
+        kinds.extend(plan.tables.iter().map(|t| t.bound.spec.kind.id));
+        keys.extend(
+            plan.tables
+                .iter()
+                .flat_map(|t| t.canonical().as_object().unwrap().keys().cloned().collect::<Vec<_>>()),
+        );
+        assert_reads_back(&format!("plan {plans}"), &plan);
+    }
+    for kind in TABLES {
+        assert!(kinds.contains(kind.id), "{} is in no plan", kind.id);
+    }
+    let wanted = [
+        "after",
+        "axis",
+        "before",
+        "channels",
+        "file",
+        "kind",
+        "layout",
+        "model",
+        "name",
+        "on-miss",
+        "outputs",
+        "params",
+        "reconstruction",
+        "size",
+        "texels",
+        "tolerance",
+        "waive",
+    ];
+    assert_eq!(keys.iter().map(String::as_str).collect::<Vec<_>>(), wanted, "keys of the plans");
+}
