@@ -21,8 +21,14 @@
 //! | 7 | [`plan`] | requests of any asker to one resolved job, and what its bytes depend on |
 //! | 8 | [`recipe`] | the text of recipes to requests, faults to lines; presets and engines |
 //! | 9 | [`pipeline`] | plan, bake, verify, encode, write |
-//! | 10 | `cli` | one file a verb (feature `cli`) |
+//! | 10 | [`build`] | recipes as a step of a Cargo build |
+//! | 11 | `cli` | one file a verb (feature `cli`) |
+//!
+//! # A table in ten lines
+//! [`bake`] takes a request and gives values, errors and axes in memory; [`pipeline::Baked::encode`] makes a file of them. A build
+//! script calls [`build::recipe`].
 
+pub mod build;
 pub mod cancel;
 pub mod cite;
 #[cfg(feature = "cli")]
@@ -41,6 +47,8 @@ pub mod scene;
 pub mod tables;
 pub mod terms;
 pub mod verify;
+
+pub use pipeline::bake;
 
 #[cfg(test)]
 #[path = "../tests/counted.rs"]

@@ -20,7 +20,8 @@ const RANKS: &[(&str, u32)] = &[
     ("plan", 7),
     ("recipe", 8),
     ("pipeline", 9),
-    ("cli", 10),
+    ("build", 10),
+    ("cli", 11),
 ];
 
 fn rank(room: &str) -> Option<u32> {

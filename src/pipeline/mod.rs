@@ -9,6 +9,7 @@ mod event;
 mod fit;
 mod gather;
 pub mod golden;
+mod in_memory;
 mod manifest;
 pub mod memory;
 mod size;
@@ -20,6 +21,7 @@ pub mod transaction;
 
 pub use crate::plan::MANIFEST;
 pub use event::{Event, Extremum, Progress, Silent};
+pub use in_memory::{Baked, InMemoryError, bake, bake_until};
 pub use manifest::{FileRecord, Manifest, TableRecord};
 pub use threads::{MOST_THREADS, pool};
 pub use transaction::Recovery;

@@ -2,15 +2,15 @@
 
 use super::advice::advice;
 use super::event::{ChoiceEntry, ReconstructionEntry};
-use super::fit;
+use super::fit::{self, Fitted};
 use super::gather::{Part, Written};
 use super::manifest::tool;
 use super::texels::{Chosen, Source};
 use super::{Event, Extremum, FileRecord, PipelineError, Progress, TableRecord, size};
 use crate::cancel::Cancel;
 use crate::encode::{EncodeInput, Label, Unstored};
-use crate::grid::Provenance;
 use crate::grid::provenance::{AxisRecord, Encoding, Integration, RecipeId, SCHEMA, SizeRecord, Subject};
+use crate::grid::{Provenance, Table};
 use crate::plan::{Output, Plan, PlannedTable};
 use crate::tables::driver::{self, Options};
 use crate::tables::{Bound, Spec, source};
@@ -51,19 +51,13 @@ pub(super) fn make(
     progress.event(&Event::TableStarted { table: name, index, texels: spec.grid.len() });
     let start = Instant::now();
     let tick = |done| progress.event(&Event::TableProgress { table: name, index, done });
-    let options =
-        Options { tolerance: planned.tolerance, on_miss: planned.asked.on_miss, cancel, progress: &tick };
-    let table = driver::bake(&planned.bound, options)
-        .map_err(|error| PipelineError::Bake { table: name.to_owned(), error })?;
+    let table = bake(planned, cancel, &tick)?;
     let bake_seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let checked =
-        verify::check_until(cancel, &planned.bound, table, planned.tolerance, &planned.asked.waivers)?;
-    let (verified, warnings) = checked.map_err(PipelineError::Laws)?;
+    let Checked { verified, warnings, provenance } = check(&plan.name, planned, table, cancel)?;
     for finding in &warnings {
         progress.event(&Event::Finding { table: name, finding });
     }
-    let provenance = provenance(plan, planned, &verified);
     let mut made = Made {
         record: TableRecord {
             provenance: provenance.clone(),
@@ -74,21 +68,9 @@ pub(super) fn make(
         files: Vec::new(),
     };
     let names = planned.files();
-    // the laws are those of the integrals; what is fitted to them is judged by how it reads
-    let fitted = match planned.asked.texels.are_exact() {
-        true => None,
-        false => Some(fit::fit(planned, &planned.bound, verified.table(), planned.tolerance, false, cancel)?),
-    };
-    let probe =
-        planned.reconstruction.then(|| Probe::until(cancel, &planned.bound, planned.tolerance, COMPARED));
+    let readings = Readings::new(planned, verified.table(), cancel)?;
     for (output, file) in planned.outputs.iter().zip(names) {
-        let source = Source {
-            bound: &planned.bound,
-            table: verified.table(),
-            fitted: fitted.as_ref(),
-            probe: probe.as_ref(),
-            cancel,
-        };
+        let source = readings.source(planned, verified.table(), cancel);
         let (record, bytes) = encode_output(planned, output, &source, &provenance, &file, shared)?;
         made.record.files.push(record);
         made.files.push((file, bytes));
@@ -96,6 +78,72 @@ pub(super) fn make(
     let check_seconds = start.elapsed().as_secs_f64();
     progress.event(&finished(planned, index, &made.record, bake_seconds, check_seconds));
     Ok(made)
+}
+
+/// The integrals of a table.
+pub(super) fn bake(
+    planned: &PlannedTable,
+    cancel: &Cancel,
+    progress: &(dyn Fn(usize) + Sync),
+) -> Result<Table, PipelineError> {
+    let options = Options { tolerance: planned.tolerance, on_miss: planned.asked.on_miss, cancel, progress };
+    driver::bake(&planned.bound, options)
+        .map_err(|error| PipelineError::Bake { table: planned.name().to_owned(), error })
+}
+
+/// A table that keeps its laws, and what its files say of it.
+#[derive(Debug)]
+pub(super) struct Checked {
+    pub(super) verified: Verified,
+    pub(super) warnings: Vec<Finding>,
+    pub(super) provenance: Provenance,
+}
+
+/// Looks at the laws of a table of the plan of this name.
+pub(super) fn check(
+    plan: &str,
+    planned: &PlannedTable,
+    table: Table,
+    cancel: &Cancel,
+) -> Result<Checked, PipelineError> {
+    let checked =
+        verify::check_until(cancel, &planned.bound, table, planned.tolerance, &planned.asked.waivers)?;
+    let (verified, warnings) = checked.map_err(PipelineError::Laws)?;
+    let provenance = provenance(plan, planned, &verified);
+    Ok(Checked { verified, warnings, provenance })
+}
+
+/// What is known of a table between its texels: values fitted to its reader, and fresh integrals to compare with.
+pub(super) struct Readings<'a> {
+    fitted: Option<Fitted>,
+    probe: Option<Probe<'a>>,
+}
+
+impl<'a> Readings<'a> {
+    pub(super) fn new(
+        planned: &'a PlannedTable,
+        table: &Table,
+        cancel: &'a Cancel,
+    ) -> Result<Readings<'a>, PipelineError> {
+        // the laws are those of the integrals; what is fitted to them is judged by how it reads
+        let fitted = match planned.asked.texels.are_exact() {
+            true => None,
+            false => Some(fit::fit(planned, &planned.bound, table, planned.tolerance, false, cancel)?),
+        };
+        let probe =
+            planned.reconstruction.then(|| Probe::until(cancel, &planned.bound, planned.tolerance, COMPARED));
+        Ok(Readings { fitted, probe })
+    }
+
+    pub(super) fn source<'s>(
+        &'s self,
+        planned: &'s PlannedTable,
+        table: &'s Table,
+        cancel: &'s Cancel,
+    ) -> Source<'s> {
+        let (fitted, probe) = (self.fitted.as_ref(), self.probe.as_ref());
+        Source { bound: &planned.bound, table, fitted, probe, cancel }
+    }
 }
 
 fn size_found<'a>(found: &'a PlannedTable, record: &'a SizeRecord, index: usize, seconds: f64) -> Event<'a> {
@@ -110,7 +158,7 @@ fn size_found<'a>(found: &'a PlannedTable, record: &'a SizeRecord, index: usize,
     }
 }
 
-fn encode_output(
+pub(super) fn encode_output(
     planned: &PlannedTable,
     output: &Output,
     source: &Source<'_>,
@@ -188,13 +236,13 @@ fn encode_output(
 }
 
 /// What every file of a table says of itself.
-fn provenance(plan: &Plan, planned: &PlannedTable, verified: &Verified) -> Provenance {
+fn provenance(plan: &str, planned: &PlannedTable, verified: &Verified) -> Provenance {
     let Bound { spec, baker } = &planned.bound;
     let table = verified.table();
     Provenance {
         schema: SCHEMA,
         tool: tool(),
-        recipe: RecipeId { name: plan.name.clone(), hash: planned.identity.clone() },
+        recipe: RecipeId { name: plan.to_owned(), hash: planned.identity.clone() },
         name: planned.name().to_owned(),
         table: Subject {
             id: spec.kind.id.to_owned(),
