@@ -75,9 +75,9 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
 
 impl Baker for AverageAlbedo {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
-        let params = self.sides.sweep.params(at);
+        let params = self.sides.sweep.params(at)?;
         let models = self.sides.models(at)?;
-        let range = Range::of(params.number("alpha"), params.number("eta"), self.sides.inside());
+        let range = Range::of(params.number("alpha")?, params.number("eta")?, self.sides.inside());
         average_of(&range, models.turns(), self.sides.channels(), tolerance, |view, tolerance| {
             self.sides.at(&models, view, tolerance)
         })

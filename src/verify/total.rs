@@ -78,7 +78,10 @@ fn skin(case: &Case<'_>) -> Outcome {
     let (Some(ndotl), Some(curvature)) = (spec.axis("ndotl"), spec.axis("curvature")) else {
         return Outcome::NotChecked("no axis of angle or curvature".to_owned());
     };
-    let sphere = spec.params.choice("over") == "sphere";
+    let sphere = match spec.params.choice("over") {
+        Ok(word) => word == "sphere",
+        Err(e) => return Outcome::NotChecked(e.to_string()),
+    };
     let expected = if sphere { 0.5 } else { 1.0 };
     let mut watch = Watch::default();
     for value in rows(case, curvature) {
@@ -100,7 +103,7 @@ fn skin(case: &Case<'_>) -> Outcome {
 fn radial(case: &Case<'_>, per: Per) -> Outcome {
     let spec = &case.bound.spec;
     let Ok(profile) = Profile::new(spec) else { return nothing() };
-    let expected = diffusion_profile::factor(spec, &profile);
+    let Ok(expected) = diffusion_profile::factor(spec, &profile) else { return nothing() };
     let area = per == Per::Area;
     let sum = add_up(case, &outwards(&profile), 3, case.tolerance, |r| {
         (vec![r], if area { 2.0 * PI * r } else { 1.0 })
@@ -128,7 +131,7 @@ fn sphere(case: &Case<'_>) -> Outcome {
     let values: Vec<Option<f64>> = axis.map_or(vec![None], |i| rows(case, i).into_iter().map(Some).collect());
     let mut watch = Watch::default();
     for g in values {
-        let phase = Phase::new(&spec.params, g);
+        let Ok(phase) = Phase::new(&spec.params, g) else { return nothing() };
         let relative = spec.roles().contains(&Role::Phase { relative: true });
         let peak = if relative { phase.largest() } else { 1.0 };
         let deflection = spec.axis("deflection").unwrap_or(0);
@@ -173,7 +176,8 @@ fn ends(case: &Case<'_>) -> Outcome {
     let spec = &case.bound.spec;
     let Ok(profile) = Profile::new(spec) else { return nothing() };
     let radial = spec.roles().iter().any(|role| matches!(role, Role::ProfileWithin(_)));
-    let all = if radial { diffusion_profile::factor(spec, &profile) } else { [1.0; 3] };
+    let factor = if radial { diffusion_profile::factor(spec, &profile) } else { Ok([1.0; 3]) };
+    let Ok(all) = factor else { return nothing() };
     let end = outwards(&profile).last().copied().unwrap_or(0.0);
     let mut watch = Watch::default();
     for (at, part) in [(0.0, 0.0), (1e3 * end, 1.0)] {
