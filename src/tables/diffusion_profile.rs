@@ -88,17 +88,16 @@ struct Table {
 }
 
 /// What the table's values integrate to, of each channel.
-///
-/// # Errors
-/// [`ParamError`](crate::models::ParamError) for a kind without `scale`.
-pub fn factor(spec: &Spec, profile: &Profile) -> Result<[f64; 3], crate::models::ParamError> {
-    let scaled = spec.params.choice("scale")? == "albedo";
-    Ok(if scaled { profile.total() } else { [1.0; 3] })
+#[must_use]
+pub fn factor(spec: &Spec, profile: &Profile) -> [f64; 3] {
+    // kinds without the choice are not scaled
+    let scaled = spec.params.choice("scale").is_ok_and(|word| word == "albedo");
+    if scaled { profile.total() } else { [1.0; 3] }
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     let profile = Profile::new(spec)?;
-    let factor = factor(spec, &profile)?;
+    let factor = factor(spec, &profile);
     let forms = spec.each(|role| match role {
         Role::Profile(per, _) => Some(Form::Density(per)),
         Role::ProfileWithin(_) => Some(Form::Within),

@@ -153,7 +153,7 @@ impl Glass {
     fn means(&self, at: &[f64], models: [&dyn Brdf; 2], tolerance: f64) -> Result<Estimate, TexelError> {
         let params = self.sweep.params(at)?;
         self.averages.get(&params, tolerance, || {
-            let range = Range::of(params.number("alpha")?, params.number("eta")?, true);
+            let range = Range::of(params.optional("alpha"), params.optional("eta"), true);
             let turns = models.iter().any(|m| m.turns());
             average_of(&range, turns, 2, tolerance, |view, tolerance| {
                 let mut both = missing(models[0], view, tolerance)?;

@@ -106,8 +106,10 @@ impl Sweep {
     /// [`TexelError::Param`] where the model refuses the parameters.
     pub fn model_from(&self, at: &[f64], side: Side) -> Result<Box<dyn Brdf>, TexelError> {
         let mut params = self.params(at)?;
-        if side == Side::Inside {
-            params.set("eta", 1.0 / params.number("eta")?);
+        if side == Side::Inside
+            && let Some(eta) = params.optional("eta")
+        {
+            params.set("eta", 1.0 / eta);
         }
         Ok((self.info.build)(&params)?)
     }

@@ -86,6 +86,12 @@ impl Params {
         }
     }
 
+    /// A number, of a model that may not have it.
+    #[must_use]
+    pub fn optional(&self, id: &str) -> Option<f64> {
+        self.number(id).ok()
+    }
+
     /// Several numbers.
     ///
     /// # Errors

@@ -31,7 +31,8 @@ impl Colour {
         let mut breaks: Vec<f64> = WYMAN_BREAKS.to_vec();
         if !matches!(role, Role::BlackBody(..)) {
             breaks.extend((36..=83).map(|i| 10.0 * f64::from(i)));
-            let rows = metals::find(spec.params.choice("metal").ok()?).into_iter().flat_map(|m| m.rows);
+            let rows =
+                spec.params.choice("metal").ok().and_then(metals::find).into_iter().flat_map(|m| m.rows);
             breaks.extend(rows.map(|row| row[0]).filter(|l| (360.0..830.0).contains(l)));
         }
         breaks.sort_by(f64::total_cmp);

@@ -127,7 +127,7 @@ fn pair(role: Role, asked: &Asked<'_>, [o, i]: [f64; 2], alpha: f64) -> Option<T
     let ([over_o, e_o], [over_i, e_i]) =
         (<[f64; 2]>::from(normals.over_masking(o, alpha)), <[f64; 2]>::from(normals.over_masking(i, alpha)));
     let rational = matches!(normals, Normals::Rational(_));
-    let correlated = asked.spec.params.choice("masking").ok()? == "correlated" && !rational;
+    let correlated = asked.spec.params.choice("masking").is_ok_and(|word| word == "correlated") && !rational;
     // 1 / (1 + L_o + L_i) over mu_o mu_i, or the product of both G1 over them: the denominators
     let (below, error) = if correlated {
         let (hidden_o, hidden_i) = (over_o - o, over_i - i);

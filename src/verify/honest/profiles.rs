@@ -40,7 +40,7 @@ impl Profiles {
         };
         spec.roles().iter().find(|r| about_profiles(r))?;
         let profile = Profile::new(spec).ok()?;
-        let albedo = spec.params.choice("scale").ok()? == "albedo";
+        let albedo = spec.params.choice("scale").is_ok_and(|word| word == "albedo");
         let mut profiles = Profiles { profile, whole: [1.0; 3], albedo };
         profiles.whole = [Band::Red, Band::Green, Band::Blue].map(|band| {
             let ring = &mut |r: f64| 2.0 * PI * profiles.raw_times_radius(r, band);
