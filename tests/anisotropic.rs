@@ -66,7 +66,7 @@ fn average_albedo_of_an_anisotropic_model_is_averaged_over_the_azimuth() {
     let mut params = Params::resolve(info.id, info.params, []).unwrap();
     assert!(params.set("alpha_x", 0.15) && params.set("alpha_y", 0.6));
     let f = (info.build)(&params).unwrap();
-    let got = average(&*f, 0.25, 1e-6).unwrap();
+    let got = average(&*f, Some(0.25), 1e-6).unwrap();
     // brute force: midpoints in mu^2 and in a whole turn
     let (n, m) = (400, 24);
     let mut sum = 0.0;

@@ -3,7 +3,7 @@
 
 use brdfbake::functions;
 use brdfbake::grid::Quantity;
-use brdfbake::models::{Kind, MODELS, Param, Preset};
+use brdfbake::models::{Kind, MODELS, Param, Params, Preset};
 use brdfbake::tables::{ModelUse, TABLES};
 use brdfbake::verify::LAWS;
 use std::collections::BTreeSet;
@@ -134,4 +134,29 @@ fn laws_are_complete() {
 fn sources_are_in_the_bibliography() {
     let keys: BTreeSet<&str> = brdfbake::cite::ALL.iter().map(|c| c.key).collect();
     assert_eq!(keys.len(), brdfbake::cite::ALL.len(), "a key is used twice");
+}
+
+#[test]
+fn what_is_not_declared_is_an_error_and_no_number() {
+    for m in MODELS {
+        let params = Params::resolve(m.id, m.params, []).unwrap();
+        for wrong in ["", "nothing", "Alpha", "alpha "] {
+            let message = format!("{}: it declares no `{wrong}` that is a parameter", m.id);
+            assert_eq!(params.number(wrong).unwrap_err().to_string(), message);
+            assert_eq!(params.choice(wrong).unwrap_err().to_string(), message);
+            assert_eq!(params.rows(wrong).unwrap_err().to_string(), message);
+            assert_eq!(params.numbers([wrong]).unwrap_err().to_string(), message);
+        }
+        // a parameter of another type is not declared either
+        for p in m.params {
+            let [number, choice, rows] =
+                [params.number(p.id).is_ok(), params.choice(p.id).is_ok(), params.rows(p.id).is_ok()];
+            let kind = [
+                matches!(p.kind, Kind::Number { .. }),
+                matches!(p.kind, Kind::Choice(_)),
+                matches!(p.kind, Kind::Rows { .. }),
+            ];
+            assert_eq!([number, choice, rows], kind, "{}.{}", m.id, p.id);
+        }
+    }
 }

@@ -83,6 +83,10 @@ impl Encoder for Dds {
         false
     }
 
+    fn colours(&self, _count: usize) -> &'static [&'static str] {
+        super::COLOURS
+    }
+
     fn magic(&self) -> &'static [&'static [u8]] {
         &[MAGIC]
     }

@@ -43,6 +43,10 @@ impl Encoder for Hdr {
         3
     }
 
+    fn colours(&self, _count: usize) -> &'static [&'static str] {
+        super::COLOURS
+    }
+
     fn magic(&self) -> &'static [&'static [u8]] {
         &[MAGIC, OTHER]
     }

@@ -79,6 +79,10 @@ impl Encoder for Ktx2 {
         texels::packed(shape.storage).unwrap_or(wanted)
     }
 
+    fn colours(&self, _count: usize) -> &'static [&'static str] {
+        super::COLOURS
+    }
+
     fn magic(&self) -> &'static [&'static [u8]] {
         &[MAGIC]
     }

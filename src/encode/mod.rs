@@ -106,6 +106,11 @@ pub trait Encoder: Debug + Send + Sync {
     fn components(&self, shape: &Shape<'_>) -> usize {
         shape.channels
     }
+    /// What its readers call the components of a pixel, of which there are `count`, where the file has no names for channels.
+    fn colours(&self, count: usize) -> &'static [&'static str] {
+        let _ = count;
+        &[]
+    }
     /// Checks the lengths of the axes.
     ///
     /// # Errors
@@ -191,6 +196,9 @@ pub static ENCODERS: &[&dyn Encoder] = &[
     &code::Code(code::Hlsl),
     &code::Code(code::Js),
 ];
+
+/// Colours of a pixel of one to four components.
+const COLOURS: &[&str] = &["red", "green", "blue", "alpha"];
 
 /// Looks a container up by its id.
 #[must_use]

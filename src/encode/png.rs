@@ -58,6 +58,10 @@ impl Encoder for Png {
         }
     }
 
+    fn colours(&self, count: usize) -> &'static [&'static str] {
+        if count == 1 { &["grey"] } else { super::COLOURS }
+    }
+
     fn magic(&self) -> &'static [&'static [u8]] {
         &[b"\x89PNG\r\n\x1a\n"]
     }

@@ -38,8 +38,8 @@ pub static ALL: &[FunctionInfo] = &[
             "closed form",
         )],
         eval: |p, _| {
-            let (f, e) = (p.number("f_avg"), p.number("e_avg"));
-            Ok(if p.choice("form") == "slides" { ms::colour_slides(f, e) } else { ms::colour_series(f, e) })
+            let (f, e) = (p.number("f_avg")?, p.number("e_avg")?);
+            Ok(if p.choice("form")? == "slides" { ms::colour_slides(f, e) } else { ms::colour_series(f, e) })
         },
     },
     FunctionInfo {
@@ -65,7 +65,7 @@ pub static ALL: &[FunctionInfo] = &[
             "closed form",
         )],
         eval: |p, _| {
-            Ok(ms::kulla_conty(p.number("missing_o"), p.number("missing_i"), p.number("missing_avg")))
+            Ok(ms::kulla_conty(p.number("missing_o")?, p.number("missing_i")?, p.number("missing_avg")?))
         },
     },
     FunctionInfo {
@@ -80,7 +80,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "View side only, so the result is not reciprocal.",
         also: &[],
         known: &[known(&[("f0", "0.5"), ("e", "0.5")], NO_ANGLES, 1.5, 1e-15, "closed form")],
-        eval: |p, _| Ok(ms::turquin(p.number("f0"), p.number("e"))),
+        eval: |p, _| Ok(ms::turquin(p.number("f0")?, p.number("e")?)),
     },
     FunctionInfo {
         id: "fdez-aguera-weights",
@@ -119,8 +119,8 @@ pub static ALL: &[FunctionInfo] = &[
             ),
         ],
         eval: |p, _| {
-            let parts = ms::fdez_aguera(p.number("f0"), p.number("scale"), p.number("bias"));
-            Ok(match p.choice("part") {
+            let parts = ms::fdez_aguera(p.number("f0")?, p.number("scale")?, p.number("bias")?);
+            Ok(match p.choice("part")? {
                 "single" => parts.single,
                 "multiple" => parts.multiple,
                 _ => parts.rest,

@@ -21,7 +21,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "Multiply the lobe by (1 + s') / (1 + s).",
         also: &[alias("toksvig_power")],
         known: &[known(&[("length", "0.25"), ("s", "8")], NO_ANGLES, 0.32, 1e-15, "closed form: 2 / 6.25")],
-        eval: |p, _| Ok(normal_filtering::toksvig(p.number("s"), p.number("length"))),
+        eval: |p, _| Ok(normal_filtering::toksvig(p.number("s")?, p.number("length")?)),
     },
     FunctionInfo {
         id: "tokuyoshi-kaplanyan",
@@ -48,8 +48,8 @@ pub static ALL: &[FunctionInfo] = &[
             "closed form: alpha^2 doubles",
         )],
         eval: |p, _| {
-            let (d2, sigma2) = (p.number("d2"), p.number("sigma2"));
-            Ok(normal_filtering::tokuyoshi_kaplanyan(p.number("alpha"), d2, sigma2, p.number("kappa")))
+            let (d2, sigma2) = (p.number("d2")?, p.number("sigma2")?);
+            Ok(normal_filtering::tokuyoshi_kaplanyan(p.number("alpha")?, d2, sigma2, p.number("kappa")?))
         },
     },
     FunctionInfo {
@@ -90,11 +90,11 @@ pub static ALL: &[FunctionInfo] = &[
         ],
         eval: |p, _| {
             let lean = Lean {
-                mean: [p.number("bx"), p.number("by")],
-                moments: [p.number("mxx"), p.number("mxy"), p.number("myy")],
-                power: p.number("s"),
+                mean: [p.number("bx")?, p.number("by")?],
+                moments: [p.number("mxx")?, p.number("mxy")?, p.number("myy")?],
+                power: p.number("s")?,
             };
-            Ok(lean.slope_density([p.number("hx"), p.number("hy")]))
+            Ok(lean.slope_density([p.number("hx")?, p.number("hy")?]))
         },
     },
 ];

@@ -2,7 +2,7 @@
 
 use super::{FunctionInfo, Input, NO_ANGLES, REFERENCE, alias, alias_with, known, number, theta};
 use crate::cite;
-use crate::models::{Param, Params};
+use crate::models::{Param, ParamError, Params};
 use crate::terms::fresnel::{self, Polarised};
 use crate::terms::{gulbrandsen, lazanyi, schlick};
 
@@ -29,12 +29,12 @@ const INCIDENCE: Input = Input::Incidence("the angle of incidence");
 const BOTH_SIDES: Input = Input::WiTheta("the angle of incidence; above pi/2 the light comes from below");
 
 /// The polarisation that the parameters name.
-pub(super) fn polarised(params: &Params, value: Polarised) -> f64 {
-    match params.choice("polarisation") {
+pub(super) fn polarised(params: &Params, value: Polarised) -> Result<f64, ParamError> {
+    Ok(match params.choice("polarisation")? {
         "s" => value.s,
         "p" => value.p,
         _ => value.unpolarised(),
-    }
+    })
 }
 
 /// The family.
@@ -51,7 +51,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "The same from both sides.",
         also: &[alias("F0_dielectric")],
         known: &[known(&[("eta", "1.5")], NO_ANGLES, 0.04, 1e-15, "closed form: 1 / 25")],
-        eval: |p, _| Ok(fresnel::dielectric(1.0, p.number("eta")).unpolarised()),
+        eval: |p, _| Ok(fresnel::dielectric(1.0, p.number("eta")?).unpolarised()),
     },
     FunctionInfo {
         id: "f0-conductor",
@@ -71,7 +71,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-15,
             REFERENCE,
         )],
-        eval: |p, _| Ok(lazanyi::f0(p.number("n"), p.number("k"))),
+        eval: |p, _| Ok(lazanyi::f0(p.number("n")?, p.number("k")?)),
     },
     FunctionInfo {
         id: "fresnel-dielectric",
@@ -89,7 +89,7 @@ pub static ALL: &[FunctionInfo] = &[
             alias_with("fresnel_dielectric_unpolarised", &[("polarisation", "unpolarised")]),
         ],
         known: &[known(&[("eta", "1.5")], theta(1.25), 0.193_372_521_289_781_5, 1e-14, REFERENCE)],
-        eval: |p, at| Ok(polarised(p, fresnel::dielectric(libm::cos(at.wi_theta), p.number("eta")))),
+        eval: |p, at| Ok(polarised(p, fresnel::dielectric(libm::cos(at.wi_theta), p.number("eta")?))?),
     },
     FunctionInfo {
         id: "fresnel-dielectric-transmittance",
@@ -104,7 +104,7 @@ pub static ALL: &[FunctionInfo] = &[
         also: &[],
         known: &[known(&[("eta", "1.5")], theta(0.0), 0.96, 1e-15, "closed form: 24 / 25")],
         eval: |p, at| {
-            Ok(polarised(p, fresnel::dielectric_transmittance(libm::cos(at.wi_theta), p.number("eta"))))
+            Ok(polarised(p, fresnel::dielectric_transmittance(libm::cos(at.wi_theta), p.number("eta")?))?)
         },
     },
     FunctionInfo {
@@ -130,8 +130,8 @@ pub static ALL: &[FunctionInfo] = &[
             REFERENCE,
         )],
         eval: |p, at| {
-            let value = fresnel::conductor(libm::cos(at.wi_theta), p.number("n"), p.number("k"));
-            Ok(polarised(p, value))
+            let value = fresnel::conductor(libm::cos(at.wi_theta), p.number("n")?, p.number("k")?);
+            Ok(polarised(p, value)?)
         },
     },
     FunctionInfo {
@@ -153,8 +153,9 @@ pub static ALL: &[FunctionInfo] = &[
             REFERENCE,
         )],
         eval: |p, at| {
-            let value = fresnel::conductor_absorptance(libm::cos(at.wi_theta), p.number("n"), p.number("k"));
-            Ok(polarised(p, value))
+            let value =
+                fresnel::conductor_absorptance(libm::cos(at.wi_theta), p.number("n")?, p.number("k")?);
+            Ok(polarised(p, value)?)
         },
     },
     FunctionInfo {
@@ -169,7 +170,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "Off by up to 0.060 from a dielectric of 1.33, 0.036 of 1.5, 0.082 of 2.5.",
         also: &[alias("fresnel_schlick")],
         known: &[known(&[("f0", "0.02")], theta(1.0), 0.040_118_134_265_949_23, 1e-14, REFERENCE)],
-        eval: |p, at| Ok(schlick::schlick(p.number("f0"), p.number("f90"), libm::cos(at.wi_theta))),
+        eval: |p, at| Ok(schlick::schlick(p.number("f0")?, p.number("f90")?, libm::cos(at.wi_theta))),
     },
     FunctionInfo {
         id: "fresnel-schlick-generalised",
@@ -191,7 +192,7 @@ pub static ALL: &[FunctionInfo] = &[
         )],
         eval: |p, at| {
             let cos = libm::cos(at.wi_theta);
-            Ok(schlick::schlick_generalised(p.number("f0"), p.number("f90"), p.number("exponent"), cos))
+            Ok(schlick::schlick_generalised(p.number("f0")?, p.number("f90")?, p.number("exponent")?, cos))
         },
     },
     FunctionInfo {
@@ -212,7 +213,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-13,
             REFERENCE,
         )],
-        eval: |p, at| Ok(schlick::f82_tint(p.number("f0"), p.number("tint"), libm::cos(at.wi_theta))),
+        eval: |p, at| Ok(schlick::f82_tint(p.number("f0")?, p.number("tint")?, libm::cos(at.wi_theta))),
     },
     FunctionInfo {
         id: "fresnel-f82-tint-unclamped",
@@ -233,7 +234,7 @@ pub static ALL: &[FunctionInfo] = &[
             REFERENCE,
         )],
         eval: |p, at| {
-            Ok(schlick::f82_tint_unclamped(p.number("f0"), p.number("tint"), libm::cos(at.wi_theta)))
+            Ok(schlick::f82_tint_unclamped(p.number("f0")?, p.number("tint")?, libm::cos(at.wi_theta)))
         },
     },
     FunctionInfo {
@@ -256,7 +257,7 @@ pub static ALL: &[FunctionInfo] = &[
         )],
         eval: |p, at| {
             let cos = libm::cos(at.wi_theta);
-            Ok(lazanyi::lazanyi(p.number("n"), p.number("k"), p.number("a"), p.number("exponent"), cos))
+            Ok(lazanyi::lazanyi(p.number("n")?, p.number("k")?, p.number("a")?, p.number("exponent")?, cos))
         },
     },
     FunctionInfo {
@@ -282,8 +283,8 @@ pub static ALL: &[FunctionInfo] = &[
             REFERENCE,
         )],
         eval: |p, _| {
-            let (n, k) = gulbrandsen::index(p.number("r"), p.number("g"));
-            Ok(if p.choice("part") == "n" { n } else { k })
+            let (n, k) = gulbrandsen::index(p.number("r")?, p.number("g")?);
+            Ok(if p.choice("part")? == "n" { n } else { k })
         },
     },
     FunctionInfo {
@@ -305,8 +306,8 @@ pub static ALL: &[FunctionInfo] = &[
             "inverse of a reference value",
         )],
         eval: |p, _| {
-            let (r, g) = gulbrandsen::tint(p.number("n"), p.number("k"));
-            Ok(if p.choice("part") == "r" { r } else { g })
+            let (r, g) = gulbrandsen::tint(p.number("n")?, p.number("k")?);
+            Ok(if p.choice("part")? == "r" { r } else { g })
         },
     },
 ];

@@ -20,7 +20,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "Closed form; near eta = 1 in a form that does not cancel.",
         also: &[alias("Favg_dielectric")],
         known: &[known(&[("eta", "1.5")], NO_ANGLES, 0.091_777_959_342_351_21, 1e-14, REFERENCE)],
-        eval: |p, _| Ok(fresnel::dielectric_average(p.number("eta"))),
+        eval: |p, _| Ok(fresnel::dielectric_average(p.number("eta")?)),
     },
     FunctionInfo {
         id: "fresnel-average-conductor",
@@ -40,7 +40,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-13,
             REFERENCE,
         )],
-        eval: |p, _| Ok(conductor_average(p.number("n"), p.number("k"))),
+        eval: |p, _| Ok(conductor_average(p.number("n")?, p.number("k")?)),
     },
     FunctionInfo {
         id: "fresnel-average-schlick",
@@ -54,7 +54,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "Exact for Schlick's factor; 0.0857 for eta = 1.5, whose exact average is 0.0918.",
         also: &[],
         known: &[known(&[("f0", "0")], NO_ANGLES, 1.0 / 21.0, 1e-15, "closed form: 2 B(2, 6)")],
-        eval: |p, _| Ok(schlick::schlick_average(p.number("f0"), p.number("f90"))),
+        eval: |p, _| Ok(schlick::schlick_average(p.number("f0")?, p.number("f90")?)),
     },
     FunctionInfo {
         id: "fresnel-average-schlick-generalised",
@@ -75,7 +75,7 @@ pub static ALL: &[FunctionInfo] = &[
             "closed form: 2 int (1 - c) c dc",
         )],
         eval: |p, _| {
-            Ok(schlick::schlick_generalised_average(p.number("f0"), p.number("f90"), p.number("exponent")))
+            Ok(schlick::schlick_generalised_average(p.number("f0")?, p.number("f90")?, p.number("exponent")?))
         },
     },
     FunctionInfo {
@@ -96,7 +96,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-14,
             REFERENCE,
         )],
-        eval: |p, _| Ok(schlick::f82_tint_average(p.number("f0"), p.number("tint"))),
+        eval: |p, _| Ok(schlick::f82_tint_average(p.number("f0")?, p.number("tint")?)),
     },
     FunctionInfo {
         id: "fresnel-average-lazanyi",
@@ -116,7 +116,9 @@ pub static ALL: &[FunctionInfo] = &[
             1e-14,
             "closed form: 2 B(2, 6) - 2 B(3, 7)",
         )],
-        eval: |p, _| Ok(lazanyi::average(p.number("n"), p.number("k"), p.number("a"), p.number("exponent"))),
+        eval: |p, _| {
+            Ok(lazanyi::average(p.number("n")?, p.number("k")?, p.number("a")?, p.number("exponent")?))
+        },
     },
 ];
 

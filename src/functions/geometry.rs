@@ -38,7 +38,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-14,
             REFERENCE,
         )],
-        eval: |p, at| Ok(component(p, frame::reflect(at.wi, at.wo))),
+        eval: |p, at| Ok(component(p, frame::reflect(at.wi, at.wo))?),
     },
     FunctionInfo {
         id: "refract",
@@ -78,7 +78,7 @@ pub static ALL: &[FunctionInfo] = &[
         also: &[alias("critical_angle_rad")],
         known: &[known(&[("eta", "1.5")], NO_ANGLES, 0.729_727_656_226_966_3, 1e-15, REFERENCE)],
         eval: |p, _| {
-            let eta = p.number("eta");
+            let eta = p.number("eta")?;
             Ok(libm::atan2(1.0 / eta, fresnel::cos_critical(eta)))
         },
     },
@@ -94,7 +94,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "Seen from the side of the index that eta is relative to.",
         also: &[alias("brewster_angle_rad")],
         known: &[known(&[("eta", "1.5")], NO_ANGLES, 0.982_793_723_247_329, 1e-15, REFERENCE)],
-        eval: |p, _| Ok(libm::atan(p.number("eta"))),
+        eval: |p, _| Ok(libm::atan(p.number("eta")?)),
     },
     FunctionInfo {
         id: "radiance-scale",
@@ -109,7 +109,7 @@ pub static ALL: &[FunctionInfo] = &[
         also: &[alias("radiance_scale_T_times_eta2_normal_incidence")],
         known: &[known(&[("eta", "1.5")], NO_ANGLES, 2.16, 1e-15, "closed form: 0.96 * 2.25")],
         eval: |p, _| {
-            let eta = p.number("eta");
+            let eta = p.number("eta")?;
             Ok(fresnel::dielectric_transmittance(1.0, eta).unpolarised() * eta * eta)
         },
     },
@@ -120,5 +120,6 @@ fn refract(params: &Params, at: &At) -> Result<f64, FunctionError> {
         function: "refract",
         why: "total internal reflection: nothing is refracted",
     };
-    fresnel::refract(at.wi, at.wo, params.number("eta")).map(|w| component(params, w)).ok_or(undefined)
+    let through = fresnel::refract(at.wi, at.wo, params.number("eta")?).ok_or(undefined)?;
+    Ok(component(params, through)?)
 }

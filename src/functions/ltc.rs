@@ -31,10 +31,10 @@ pub static ALL: &[FunctionInfo] = &[
         known: &[known(&[], theta(0.125), 0.315_826_326_527_590_3, 1e-14, REFERENCE)],
         eval: |p, at| {
             let lobe = Ltc {
-                m11: p.number("m11"),
-                m22: p.number("m22"),
-                m13: p.number("m13"),
-                m31: p.number("m31"),
+                m11: p.number("m11")?,
+                m22: p.number("m22")?,
+                m13: p.number("m13")?,
+                m31: p.number("m31")?,
             };
             Ok(lobe.density(at.wi))
         },
@@ -61,7 +61,7 @@ pub static ALL: &[FunctionInfo] = &[
             if !frame::both_above(at.wo, at.wi) {
                 return Ok(0.0);
             }
-            let sheen = Sheen::new(at.wo.z, p.number("roughness"));
+            let sheen = Sheen::new(at.wo.z, p.number("roughness")?);
             let (wi, sin) = (at.wi, frame::sin_theta(at.wo));
             // the frame in which wo has azimuth 0
             let (c, s) = if sin > 0.0 { (at.wo.x / sin, at.wo.y / sin) } else { (1.0, 0.0) };
@@ -81,6 +81,6 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "The weight of the base below the sheen is 1 minus this.",
         also: &[],
         known: &[known(&[("roughness", "1")], theta(0.0), 0.344_619_027_497_392_2, 1e-13, REFERENCE)],
-        eval: |p, at| Ok(Sheen::new(libm::cos(at.wi_theta).max(0.0), p.number("roughness")).reflectance),
+        eval: |p, at| Ok(Sheen::new(libm::cos(at.wi_theta).max(0.0), p.number("roughness")?).reflectance),
     },
 ];

@@ -4,7 +4,7 @@ use super::ndf::{ALPHA, ALPHA_X, ALPHA_Y, GAMMA, ROUGHNESS};
 use super::{At, FunctionInfo, Input, REFERENCE, alias, known, number, theta};
 use crate::cite;
 use crate::math::frame;
-use crate::models::{Param, Params};
+use crate::models::{Param, ParamError, Params};
 use crate::terms::beckmann::Beckmann;
 use crate::terms::ggx::Ggx;
 use crate::terms::smith::Ndf;
@@ -17,8 +17,12 @@ const AT_HORIZON: &str = "Infinite at the horizon, which is an error here. Below
 const COMBINED: Param =
     Param::choice("masking", "how masking of the two directions is combined", &["correlated", "separable"]);
 
-fn g2(p: &Params, ndf: &dyn Ndf, at: &At) -> f64 {
-    if p.choice("masking") == "separable" { ndf.g2_separable(at.wo, at.wi) } else { ndf.g2(at.wo, at.wi) }
+fn g2(p: &Params, ndf: &dyn Ndf, at: &At) -> Result<f64, ParamError> {
+    Ok(if p.choice("masking")? == "separable" {
+        ndf.g2_separable(at.wo, at.wi)
+    } else {
+        ndf.g2(at.wo, at.wi)
+    })
 }
 
 /// The family.
@@ -35,7 +39,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: AT_HORIZON,
         also: &[alias("Lambda_ggx")],
         known: &[known(&[("alpha", "1")], theta(1.0), 0.425_407_858_840_462_8, 1e-14, REFERENCE)],
-        eval: |p, at| Ok(Ggx::new(p.number("alpha_x"), p.number("alpha_y")).lambda(at.wi)),
+        eval: |p, at| Ok(Ggx::new(p.number("alpha_x")?, p.number("alpha_y")?).lambda(at.wi)),
     },
     FunctionInfo {
         id: "lambda-beckmann",
@@ -49,7 +53,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "Exact, not the rational fit of Walter 2007 (which is off by up to 0.0062 in G1). Infinite at the horizon, an error.",
         also: &[alias("Lambda_beckmann")],
         known: &[known(&[("alpha", "1")], theta(1.0), 0.108_976_690_034_705_06, 1e-13, REFERENCE)],
-        eval: |p, at| Ok(Beckmann::new(p.number("alpha_x"), p.number("alpha_y")).lambda(at.wi)),
+        eval: |p, at| Ok(Beckmann::new(p.number("alpha_x")?, p.number("alpha_y")?).lambda(at.wi)),
     },
     FunctionInfo {
         id: "lambda-student-t",
@@ -70,7 +74,7 @@ pub static ALL: &[FunctionInfo] = &[
             REFERENCE,
         )],
         eval: |p, at| {
-            Ok(StudentT::new(p.number("alpha_x"), p.number("alpha_y"), p.number("gamma")).lambda(at.wi))
+            Ok(StudentT::new(p.number("alpha_x")?, p.number("alpha_y")?, p.number("gamma")?).lambda(at.wi))
         },
     },
     FunctionInfo {
@@ -85,7 +89,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "A fit by its authors, finite at the horizon.",
         also: &[alias("Lambda_charlie_fit")],
         known: &[known(&[("roughness", "1")], theta(1.0), 0.615_014_766_407_357_5, 1e-13, REFERENCE)],
-        eval: |p, at| Ok(charlie::lambda(p.number("roughness"), libm::cos(at.wi_theta).abs())),
+        eval: |p, at| Ok(charlie::lambda(p.number("roughness")?, libm::cos(at.wi_theta).abs())),
     },
     FunctionInfo {
         id: "g2-ggx",
@@ -105,7 +109,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-14,
             "closed form: G1 = 2 mu / (1 + mu) at alpha = 1",
         )],
-        eval: |p, at| Ok(g2(p, &Ggx::new(p.number("alpha_x"), p.number("alpha_y")), at)),
+        eval: |p, at| Ok(g2(p, &Ggx::new(p.number("alpha_x")?, p.number("alpha_y")?), at)?),
     },
     FunctionInfo {
         id: "g2-beckmann",
@@ -125,7 +129,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-13,
             REFERENCE,
         )],
-        eval: |p, at| Ok(g2(p, &Beckmann::new(p.number("alpha_x"), p.number("alpha_y")), at)),
+        eval: |p, at| Ok(g2(p, &Beckmann::new(p.number("alpha_x")?, p.number("alpha_y")?), at)?),
     },
     FunctionInfo {
         id: "g2-vcavity",
@@ -175,6 +179,6 @@ pub static ALL: &[FunctionInfo] = &[
             1e-14,
             "closed form: mu at k = 1",
         )],
-        eval: |p, at| Ok(schlick_masking::g1(p.number("k"), libm::cos(at.wi_theta).abs())),
+        eval: |p, at| Ok(schlick_masking::g1(p.number("k")?, libm::cos(at.wi_theta).abs())),
     },
 ];

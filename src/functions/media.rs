@@ -3,7 +3,7 @@
 use super::{FunctionInfo, NO_ANGLES, REFERENCE, alias, alias_with, known, measured, number};
 use crate::cite;
 use crate::integrate::gauss;
-use crate::models::{Param, Params};
+use crate::models::{Param, ParamError, Params};
 use crate::terms::{blackbody, medium};
 
 const SIGMA_T: Param = measured("sigma_t", "1/length", "extinction", [0.0, 1e12], 1.0);
@@ -31,7 +31,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-15,
             "closed form: 1 / e",
         )],
-        eval: |p, _| Ok(medium::transmittance(p.number("sigma_t"), p.number("d"))),
+        eval: |p, _| Ok(medium::transmittance(p.number("sigma_t")?, p.number("d")?)),
     },
     FunctionInfo {
         id: "beer-lambert-loss",
@@ -45,7 +45,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "Without the subtraction: it keeps its digits in thin media.",
         also: &[alias("beer_lambert_1_minus_T")],
         known: &[known(&[("d", "0.0009765625")], NO_ANGLES, 0.000_976_085_818_024_337_7, 1e-15, REFERENCE)],
-        eval: |p, _| Ok(medium::loss(p.number("sigma_t"), p.number("d"))),
+        eval: |p, _| Ok(medium::loss(p.number("sigma_t")?, p.number("d")?)),
     },
     FunctionInfo {
         id: "slab-emission",
@@ -65,7 +65,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-14,
             REFERENCE,
         )],
-        eval: |p, _| Ok(medium::slab_emission(p.number("j"), p.number("sigma_t"), p.number("d"))),
+        eval: |p, _| Ok(medium::slab_emission(p.number("j")?, p.number("sigma_t")?, p.number("d")?)),
     },
     FunctionInfo {
         id: "half-space-albedo",
@@ -79,7 +79,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "Index-matched boundary.",
         also: &[alias("albedo_vdh_C_of_alpha")],
         known: &[known(&[("alpha", "0.5")], NO_ANGLES, 0.144_531_942_095_001_28, 1e-14, REFERENCE)],
-        eval: |p, _| Ok(medium::half_space_albedo(p.number("alpha"), p.number("g"))),
+        eval: |p, _| Ok(medium::half_space_albedo(p.number("alpha")?, p.number("g")?)),
     },
     FunctionInfo {
         id: "single-scattering-albedo",
@@ -105,8 +105,8 @@ pub static ALL: &[FunctionInfo] = &[
         ],
         known: &[known(&[("c", "0.5")], NO_ANGLES, 0.911_706_642_634_525_7, 1e-14, REFERENCE)],
         eval: |p, _| {
-            let (c, g) = (p.number("c"), p.number("g"));
-            Ok(match p.choice("fit") {
+            let (c, g) = (p.number("c")?, p.number("g")?);
+            Ok(match p.choice("fit")? {
                 "exact" => medium::single_scattering_exact(c, g),
                 "kulla-conty" => medium::single_scattering_kulla_conty(c, g),
                 _ => medium::single_scattering_chiang(c),
@@ -131,7 +131,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-13,
             REFERENCE,
         )],
-        eval: |p, _| Ok(blackbody::planck(p.number("lambda_nm"), p.number("t_k"))),
+        eval: |p, _| Ok(blackbody::planck(p.number("lambda_nm")?, p.number("t_k")?)),
     },
     FunctionInfo {
         id: "blackbody-srgb",
@@ -154,13 +154,13 @@ pub static ALL: &[FunctionInfo] = &[
             1e-12,
             REFERENCE,
         )],
-        eval: |p, _| Ok(blackbody_srgb(p)),
+        eval: |p, _| Ok(blackbody_srgb(p)?),
     },
 ];
 
 /// Gauss-Legendre between the kinks of the colour matching functions, smooth on each side of which.
-fn blackbody_srgb(p: &Params) -> f64 {
-    let temperature = p.number("t_k");
+fn blackbody_srgb(p: &Params) -> Result<f64, ParamError> {
+    let temperature = p.number("t_k")?;
     let rule = gauss::rule(64);
     let mut xyz = [0.0; 3];
     for (channel, sum) in xyz.iter_mut().enumerate() {
@@ -171,9 +171,9 @@ fn blackbody_srgb(p: &Params) -> f64 {
         }
     }
     let rgb = blackbody::xyz_to_srgb(xyz.map(|v| v / xyz[1]));
-    match p.choice("channel") {
+    Ok(match p.choice("channel")? {
         "R" => rgb[0],
         "G" => rgb[1],
         _ => rgb[2],
-    }
+    })
 }

@@ -17,7 +17,7 @@ const SOURCES: &[(cite::Cite, &str)] = &[
 ];
 
 fn metal(params: &Params, function: &'static str) -> Result<&'static Metal, FunctionError> {
-    metals::find(params.choice("metal"))
+    metals::find(params.choice("metal")?)
         .ok_or(FunctionError::Undefined { function, why: "no such metal has been measured here" })
 }
 
@@ -55,8 +55,8 @@ pub static ALL: &[FunctionInfo] = &[
             ),
         ],
         eval: |p, _| {
-            let (n, k) = metal(p, "metal-index")?.index(p.number("lambda_nm"));
-            Ok(if p.choice("part") == "n" { n } else { k })
+            let (n, k) = metal(p, "metal-index")?.index(p.number("lambda_nm")?);
+            Ok(if p.choice("part")? == "n" { n } else { k })
         },
     },
     FunctionInfo {
@@ -77,7 +77,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-14,
             "closed form at a row of the source",
         )],
-        eval: |p, _| Ok(metal(p, "metal-f0")?.f0(p.number("lambda_nm"))),
+        eval: |p, _| Ok(metal(p, "metal-f0")?.f0(p.number("lambda_nm")?)),
     },
     FunctionInfo {
         id: "metal-f0-srgb",
@@ -99,7 +99,7 @@ pub static ALL: &[FunctionInfo] = &[
         )],
         eval: |p, _| {
             let rgb = metal(p, "metal-f0-srgb")?.f0_srgb();
-            Ok(match p.choice("channel") {
+            Ok(match p.choice("channel")? {
                 "R" => rgb[0],
                 "G" => rgb[1],
                 _ => rgb[2],

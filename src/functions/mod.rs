@@ -22,7 +22,7 @@ pub mod thin_film;
 use crate::cite::Cite;
 use crate::math::figures::{exact, significant};
 use crate::math::frame;
-use crate::models::{self, Alias, Implied, Known, Param, Params, Preset, Quantity};
+use crate::models::{self, Alias, Implied, Known, Param, ParamError, Params, Preset, Quantity};
 pub use evaluate::{EvalError, Subject};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -200,6 +200,9 @@ pub enum FunctionError {
     /// An angle that is none.
     #[error(transparent)]
     Angle(#[from] AngleError),
+    /// A parameter that the function does not declare: a fault of its file.
+    #[error(transparent)]
+    Param(#[from] ParamError),
     /// There is no value for these parameters and angles.
     #[error("{function}: {why}")]
     Undefined {
@@ -324,10 +327,10 @@ const fn theta(wi_theta: f64) -> [f64; 4] {
 const COMPONENTS: &[&str] = &["x", "y", "z"];
 
 /// The component that the parameter `component` names.
-fn component(params: &Params, v: DVec3) -> f64 {
-    match params.choice("component") {
+fn component(params: &Params, v: DVec3) -> Result<f64, ParamError> {
+    Ok(match params.choice("component")? {
         "x" => v.x,
         "y" => v.y,
         _ => v.z,
-    }
+    })
 }

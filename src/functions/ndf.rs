@@ -46,7 +46,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: SMITH,
         also: &[alias("D_ggx")],
         known: &[known(&[("alpha", "0.25")], theta(0.0), 5.092_958_178_940_651, 1e-14, REFERENCE)],
-        eval: |p, at| Ok(Ggx::new(p.number("alpha_x"), p.number("alpha_y")).d(at.wi)),
+        eval: |p, at| Ok(Ggx::new(p.number("alpha_x")?, p.number("alpha_y")?).d(at.wi)),
     },
     FunctionInfo {
         id: "d-beckmann",
@@ -60,7 +60,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: SMITH,
         also: &[alias("D_beckmann")],
         known: &[known(&[("alpha", "1")], [1.0, 2.5, 0.0, 0.0], 0.330_303_673_440_412_34, 1e-14, REFERENCE)],
-        eval: |p, at| Ok(Beckmann::new(p.number("alpha_x"), p.number("alpha_y")).d(at.wi)),
+        eval: |p, at| Ok(Beckmann::new(p.number("alpha_x")?, p.number("alpha_y")?).d(at.wi)),
     },
     FunctionInfo {
         id: "d-blinn-phong",
@@ -74,7 +74,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "Close to Beckmann with alpha^2 = 2 / (n + 2).",
         also: &[alias("D_blinn_phong")],
         known: &[known(&[("n", "2.5")], theta(0.5), 0.516_716_830_715_63, 1e-14, REFERENCE)],
-        eval: |p, at| Ok(blinn_phong::d(p.number("n"), at.wi)),
+        eval: |p, at| Ok(blinn_phong::d(p.number("n")?, at.wi)),
     },
     FunctionInfo {
         id: "d-gtr",
@@ -94,7 +94,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-14,
             REFERENCE,
         )],
-        eval: |p, at| Ok(gtr::d(p.number("alpha"), p.number("gamma"), at.wi)),
+        eval: |p, at| Ok(gtr::d(p.number("alpha")?, p.number("gamma")?, at.wi)),
     },
     FunctionInfo {
         id: "d-student-t",
@@ -114,7 +114,9 @@ pub static ALL: &[FunctionInfo] = &[
             1e-13,
             REFERENCE,
         )],
-        eval: |p, at| Ok(StudentT::new(p.number("alpha_x"), p.number("alpha_y"), p.number("gamma")).d(at.wi)),
+        eval: |p, at| {
+            Ok(StudentT::new(p.number("alpha_x")?, p.number("alpha_y")?, p.number("gamma")?).d(at.wi))
+        },
     },
     FunctionInfo {
         id: "d-charlie",
@@ -128,7 +130,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "0 at the normal: the fibres stand up.",
         also: &[alias("D_charlie")],
         known: &[known(&[("roughness", "1")], theta(1.0), 0.401_772_800_101_745_65, 1e-14, REFERENCE)],
-        eval: |p, at| Ok(charlie::d(p.number("roughness"), at.wi)),
+        eval: |p, at| Ok(charlie::d(p.number("roughness")?, at.wi)),
     },
     FunctionInfo {
         id: "d-velvet-2000",
@@ -148,7 +150,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-12,
             "closed form: 1 / (pi sigma^2) at the horizon",
         )],
-        eval: |p, at| Ok(velvet::d_2000(p.number("sigma"), at.wi)),
+        eval: |p, at| Ok(velvet::d_2000(p.number("sigma")?, at.wi)),
     },
     FunctionInfo {
         id: "d-velvet-2007",
@@ -168,7 +170,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-15,
             "closed form: 1 / (pi (1 + 4 alpha^2)) at the normal",
         )],
-        eval: |p, at| Ok(velvet::d_2007(p.number("alpha"), at.wi)),
+        eval: |p, at| Ok(velvet::d_2007(p.number("alpha")?, at.wi)),
     },
     FunctionInfo {
         id: "d-sggx",
@@ -188,7 +190,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-15,
             "closed form: sigma^3 / pi at the normal",
         )],
-        eval: |p, at| Ok(sggx::d(p.number("sigma"), at.wi)),
+        eval: |p, at| Ok(sggx::d(p.number("sigma")?, at.wi)),
     },
     FunctionInfo {
         id: "kelemen-texel",
@@ -211,6 +213,6 @@ pub static ALL: &[FunctionInfo] = &[
             1e-14,
             REFERENCE,
         )],
-        eval: |p, _| Ok(kelemen::encode(p.number("ndoth"), p.number("m"))),
+        eval: |p, _| Ok(kelemen::encode(p.number("ndoth")?, p.number("m")?)),
     },
 ];

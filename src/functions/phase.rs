@@ -60,7 +60,7 @@ pub static ALL: &[FunctionInfo] = &[
         known: &[known(&[("g", "0.875")], theta(0.0), 9.549_296_585_513_72, 1e-14, REFERENCE)],
         eval: |p, at| {
             let half = libm::sin(0.5 * at.wi_theta);
-            Ok(phase::henyey_greenstein_at(p.number("g"), 2.0 * half * half))
+            Ok(phase::henyey_greenstein_at(p.number("g")?, 2.0 * half * half))
         },
     },
     FunctionInfo {
@@ -81,7 +81,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-13,
             REFERENCE,
         )],
-        eval: |p, at| Ok(phase::draine(p.number("g"), p.number("alpha"), libm::cos(at.wi_theta))),
+        eval: |p, at| Ok(phase::draine(p.number("g")?, p.number("alpha")?, libm::cos(at.wi_theta))),
     },
     FunctionInfo {
         id: "phase-fog",
@@ -95,7 +95,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "A fit by its authors, for visible light.",
         also: &[alias("phase_mie_hg_draine_fit_5to50um")],
         known: &[known(&[("d_um", "5")], theta(0.0), 101.131_438_019_933_5, 1e-12, REFERENCE)],
-        eval: |p, at| Ok(phase::fog(p.number("d_um"), libm::cos(at.wi_theta))),
+        eval: |p, at| Ok(phase::fog(p.number("d_um")?, libm::cos(at.wi_theta))),
     },
     FunctionInfo {
         id: "draine-mean-cosine",
@@ -109,7 +109,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "g itself at alpha = 0.",
         also: &[alias("draine_mean_cos")],
         known: &[known(&[("g", "0.5"), ("alpha", "0.5")], NO_ANGLES, 0.54, 1e-15, "closed form")],
-        eval: |p, _| Ok(phase::draine_mean_cosine(p.number("g"), p.number("alpha"))),
+        eval: |p, _| Ok(phase::draine_mean_cosine(p.number("g")?, p.number("alpha")?)),
     },
     FunctionInfo {
         id: "sample-henyey-greenstein",
@@ -123,7 +123,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "No division by g.",
         also: &[alias("hg_sample_cos")],
         known: &[known(&[("g", "0.5"), ("xi", "0.5")], NO_ANGLES, 0.6875, 1e-15, "closed form")],
-        eval: |p, _| Ok(phase::sample_henyey_greenstein(p.number("g"), p.number("xi"))),
+        eval: |p, _| Ok(phase::sample_henyey_greenstein(p.number("g")?, p.number("xi")?)),
     },
     FunctionInfo {
         id: "sample-rayleigh",
@@ -137,7 +137,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "The root of cos^3 + 3 cos = 4 (2 xi - 1).",
         also: &[alias("sample_rayleigh_cos")],
         known: &[known(&[("xi", "0.75")], NO_ANGLES, 0.596_071_637_983_321_5, 1e-14, REFERENCE)],
-        eval: |p, _| Ok(phase::sample_rayleigh(p.number("xi"))),
+        eval: |p, _| Ok(phase::sample_rayleigh(p.number("xi")?)),
     },
     FunctionInfo {
         id: "sample-draine",
@@ -160,6 +160,6 @@ pub static ALL: &[FunctionInfo] = &[
             1e-13,
             "Rayleigh's, which g = 0, alpha = 1 is",
         )],
-        eval: |p, _| Ok(phase::sample_draine(p.number("g"), p.number("alpha"), p.number("xi"))),
+        eval: |p, _| Ok(phase::sample_draine(p.number("g")?, p.number("alpha")?, p.number("xi")?)),
     },
 ];

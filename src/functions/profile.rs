@@ -2,7 +2,7 @@
 
 use super::{FunctionInfo, Input, NO_ANGLES, REFERENCE, alias, alias_with, known, measured, number};
 use crate::cite;
-use crate::models::{Param, Params};
+use crate::models::{Param, ParamError, Params};
 use crate::terms::burley_diffusion::{self, Fit};
 use crate::terms::dipole::Dipole;
 use crate::terms::skin::{self, Channel};
@@ -19,24 +19,24 @@ const LENGTH: Param = measured("length", "length", "mean free path", [1e-9, 1e9]
 const FIT: Param =
     Param::choice("fit", "how the scale follows from the albedo", &["searchlight", "diffuse", "dmfp"]);
 
-fn dipole(p: &Params) -> Dipole {
-    Dipole { sigma_a: p.number("sigma_a"), sigma_s: p.number("sigma_s_prime"), eta: p.number("eta") }
+fn dipole(p: &Params) -> Result<Dipole, ParamError> {
+    Ok(Dipole { sigma_a: p.number("sigma_a")?, sigma_s: p.number("sigma_s_prime")?, eta: p.number("eta")? })
 }
 
-fn channel(p: &Params) -> Channel {
-    match p.choice("channel") {
+fn channel(p: &Params) -> Result<Channel, ParamError> {
+    Ok(match p.choice("channel")? {
         "R" => Channel::Red,
         "G" => Channel::Green,
         _ => Channel::Blue,
-    }
+    })
 }
 
-fn fit(p: &Params) -> Fit {
-    match p.choice("fit") {
+fn fit(p: &Params) -> Result<Fit, ParamError> {
+    Ok(match p.choice("fit")? {
         "searchlight" => Fit::Searchlight,
         "diffuse" => Fit::Diffuse,
         _ => Fit::DiffuseMeanFreePath,
-    }
+    })
 }
 
 /// The family.
@@ -59,7 +59,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-13,
             REFERENCE,
         )],
-        eval: |p, _| Ok(dipole(p).reflectance(p.number("r"))),
+        eval: |p, _| Ok(dipole(p)?.reflectance(p.number("r")?)),
     },
     FunctionInfo {
         id: "dipole-total",
@@ -73,7 +73,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "1 for every index if nothing absorbs.",
         also: &[alias("dipole_total_diffuse_albedo")],
         known: &[known(&[("sigma_a", "0")], NO_ANGLES, 1.0, 1e-15, "closed form: nothing absorbs")],
-        eval: |p, _| Ok(dipole(p).total()),
+        eval: |p, _| Ok(dipole(p)?.total()),
     },
     FunctionInfo {
         id: "skin-profile",
@@ -87,7 +87,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "Each channel integrates to 1: the albedo comes from a texture.",
         also: &[alias("deon_luebke_R")],
         known: &[known(&[("r_mm", "0.25")], NO_ANGLES, 0.361_152_939_742_374_95, 1e-14, REFERENCE)],
-        eval: |p, _| Ok(skin::profile(channel(p), p.number("r_mm"))),
+        eval: |p, _| Ok(skin::profile(channel(p)?, p.number("r_mm")?)),
     },
     FunctionInfo {
         id: "skin-transmittance",
@@ -112,8 +112,8 @@ pub static ALL: &[FunctionInfo] = &[
         ],
         known: &[known(&[("d_mm", "1")], NO_ANGLES, 0.406_299_753_930_596_7, 1e-14, REFERENCE)],
         eval: |p, _| {
-            let (channel, d) = (channel(p), p.number("d_mm"));
-            let jimenez = p.choice("convention") == "jimenez";
+            let (channel, d) = (channel(p)?, p.number("d_mm")?);
+            let jimenez = p.choice("convention")? == "jimenez";
             Ok(if jimenez {
                 skin::transmittance_jimenez(channel, d)
             } else {
@@ -148,7 +148,7 @@ pub static ALL: &[FunctionInfo] = &[
             REFERENCE,
         )],
         eval: |p, at| {
-            Ok(skin_specular::shading(p.number("m"), p.number("rho_s"), p.number("f0"), at.wo, at.wi))
+            Ok(skin_specular::shading(p.number("m")?, p.number("rho_s")?, p.number("f0")?, at.wo, at.wi))
         },
     },
     FunctionInfo {
@@ -175,8 +175,8 @@ pub static ALL: &[FunctionInfo] = &[
             REFERENCE,
         )],
         eval: |p, _| {
-            let (albedo, length) = (p.number("albedo"), p.number("length"));
-            Ok(burley_diffusion::profile(fit(p), albedo, length, p.number("r")))
+            let (albedo, length) = (p.number("albedo")?, p.number("length")?);
+            Ok(burley_diffusion::profile(fit(p)?, albedo, length, p.number("r")?))
         },
     },
     FunctionInfo {
@@ -198,8 +198,8 @@ pub static ALL: &[FunctionInfo] = &[
             REFERENCE,
         )],
         eval: |p, _| {
-            let scale = burley_diffusion::scale(fit(p), p.number("albedo"));
-            Ok(burley_diffusion::cdf(scale * p.number("r") / p.number("length")))
+            let scale = burley_diffusion::scale(fit(p)?, p.number("albedo")?);
+            Ok(burley_diffusion::cdf(scale * p.number("r")? / p.number("length")?))
         },
     },
     FunctionInfo {
@@ -214,6 +214,6 @@ pub static ALL: &[FunctionInfo] = &[
         notes: "The value is x = s r / l. xi = 1 counts as 1 - 2^-53.",
         also: &[alias("burley2015_cdf_inverse")],
         known: &[known(&[("xi", "0.5")], NO_ANGLES, 1.552_183_263_544_17, 1e-14, REFERENCE)],
-        eval: |p, _| Ok(burley_diffusion::cdf_inverse(p.number("xi"))),
+        eval: |p, _| Ok(burley_diffusion::cdf_inverse(p.number("xi")?)),
     },
 ];

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::cite;
 use crate::math::frame;
-use crate::models::{Param, Params};
+use crate::models::{Param, ParamError, Params};
 use crate::terms::beckmann::Beckmann;
 use crate::terms::ggx::Ggx;
 use crate::terms::smith::Ndf;
@@ -22,8 +22,8 @@ const NV: Param = number("nv", "exponent along the bitangent", [0.0, 1e7], 10.0)
 const AZIMUTH: &str = "The azimuth is 2 pi times a second random number.";
 
 /// (u, 0): the azimuth does not matter.
-fn draw(p: &Params) -> DVec2 {
-    DVec2::new(p.number("u"), 0.0)
+fn draw(p: &Params) -> Result<DVec2, ParamError> {
+    Ok(DVec2::new(p.number("u")?, 0.0))
 }
 
 /// The family.
@@ -40,7 +40,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: AZIMUTH,
         also: &[alias("sample_ggx_D_tan2theta")],
         known: &[known(&[("alpha", "0.125"), ("u", "0.5")], NO_ANGLES, 0.015_625, 1e-14, "closed form")],
-        eval: |p, _| Ok(frame::tan2_theta(Ggx::isotropic(p.number("alpha")).sample_d(draw(p)))),
+        eval: |p, _| Ok(frame::tan2_theta(Ggx::isotropic(p.number("alpha")?).sample_d(draw(p)?))),
     },
     FunctionInfo {
         id: "sample-beckmann",
@@ -60,7 +60,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-14,
             "closed form: ln 2",
         )],
-        eval: |p, _| Ok(frame::tan2_theta(Beckmann::isotropic(p.number("alpha")).sample_d(draw(p)))),
+        eval: |p, _| Ok(frame::tan2_theta(Beckmann::isotropic(p.number("alpha")?).sample_d(draw(p)?))),
     },
     FunctionInfo {
         id: "sample-blinn-phong",
@@ -74,7 +74,7 @@ pub static ALL: &[FunctionInfo] = &[
         notes: AZIMUTH,
         also: &[alias("sample_blinn_D_costheta")],
         known: &[known(&[("n", "0"), ("u", "0.25")], NO_ANGLES, 0.5, 1e-15, "closed form: sqrt(u) at n = 0")],
-        eval: |p, _| Ok(blinn_phong::sample_d(p.number("n"), draw(p)).z),
+        eval: |p, _| Ok(blinn_phong::sample_d(p.number("n")?, draw(p)?).z),
     },
     FunctionInfo {
         id: "sample-gtr",
@@ -94,7 +94,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-14,
             "closed form: (1 - alpha) / (1 - alpha^2)",
         )],
-        eval: |p, _| Ok(frame::cos2_theta(gtr::sample_d(p.number("alpha"), p.number("gamma"), draw(p)))),
+        eval: |p, _| Ok(frame::cos2_theta(gtr::sample_d(p.number("alpha")?, p.number("gamma")?, draw(p)?))),
     },
     FunctionInfo {
         id: "sample-student-t",
@@ -115,8 +115,8 @@ pub static ALL: &[FunctionInfo] = &[
             REFERENCE,
         )],
         eval: |p, _| {
-            let ndf = StudentT::isotropic(p.number("alpha"), p.number("gamma"));
-            Ok(frame::tan2_theta(ndf.sample_d(draw(p))))
+            let ndf = StudentT::isotropic(p.number("alpha")?, p.number("gamma")?);
+            Ok(frame::tan2_theta(ndf.sample_d(draw(p)?)))
         },
     },
     FunctionInfo {
@@ -137,7 +137,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-15,
             "closed form: u^(1/4)",
         )],
-        eval: |p, _| Ok(frame::sin_theta(charlie::sample_d(p.number("roughness"), draw(p)))),
+        eval: |p, _| Ok(frame::sin_theta(charlie::sample_d(p.number("roughness")?, draw(p)?))),
     },
     FunctionInfo {
         id: "d-visible-ggx",
@@ -157,7 +157,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-13,
             REFERENCE,
         )],
-        eval: |p, at| Ok(Ggx::new(p.number("alpha_x"), p.number("alpha_y")).d_visible(at.wi, at.wo)),
+        eval: |p, at| Ok(Ggx::new(p.number("alpha_x")?, p.number("alpha_y")?).d_visible(at.wi, at.wo)),
     },
     FunctionInfo {
         id: "sample-visible-ggx",
@@ -190,12 +190,12 @@ pub static ALL: &[FunctionInfo] = &[
             REFERENCE,
         )],
         eval: |p, at| {
-            let ndf = Ggx::new(p.number("alpha_x"), p.number("alpha_y"));
-            let u = DVec2::new(p.number("u1"), p.number("u2"));
-            let hemisphere = p.choice("routine") == "hemisphere";
+            let ndf = Ggx::new(p.number("alpha_x")?, p.number("alpha_y")?);
+            let u = DVec2::new(p.number("u1")?, p.number("u2")?);
+            let hemisphere = p.choice("routine")? == "hemisphere";
             let m: DVec3 =
                 if hemisphere { ndf.sample_visible_2018(at.wi, u) } else { ndf.sample_visible(at.wi, u) };
-            Ok(component(p, m))
+            Ok(component(p, m)?)
         },
     },
     FunctionInfo {
@@ -216,7 +216,7 @@ pub static ALL: &[FunctionInfo] = &[
             1e-15,
             REFERENCE,
         )],
-        eval: |p, _| Ok(ashikhmin_shirley_phi(p)),
+        eval: |p, _| Ok(ashikhmin_shirley_phi(p)?),
     },
     FunctionInfo {
         id: "sample-ashikhmin-shirley-cosine",
@@ -237,15 +237,15 @@ pub static ALL: &[FunctionInfo] = &[
             "closed form: sqrt(1 - u2) at nu = nv = 1",
         )],
         eval: |p, _| {
-            let (sin, cos) = libm::sincos(ashikhmin_shirley_phi(p));
-            let exponent = p.number("nu") * cos * cos + p.number("nv") * sin * sin;
-            Ok(libm::exp(libm::log1p(-p.number("u2")) / (exponent + 1.0)))
+            let (sin, cos) = libm::sincos(ashikhmin_shirley_phi(p)?);
+            let exponent = p.number("nu")? * cos * cos + p.number("nv")? * sin * sin;
+            Ok(libm::exp(libm::log1p(-p.number("u2")?) / (exponent + 1.0)))
         },
     },
 ];
 
-fn ashikhmin_shirley_phi(p: &Params) -> f64 {
-    let ratio = ((p.number("nu") + 1.0) / (p.number("nv") + 1.0)).sqrt();
-    let (sin, cos) = libm::sincos(std::f64::consts::FRAC_PI_2 * p.number("u1"));
-    libm::atan2(ratio * sin, cos)
+fn ashikhmin_shirley_phi(p: &Params) -> Result<f64, ParamError> {
+    let ratio = ((p.number("nu")? + 1.0) / (p.number("nv")? + 1.0)).sqrt();
+    let (sin, cos) = libm::sincos(std::f64::consts::FRAC_PI_2 * p.number("u1")?);
+    Ok(libm::atan2(ratio * sin, cos))
 }

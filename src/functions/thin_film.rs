@@ -3,7 +3,7 @@
 use super::fresnel::{POLARISATION, polarised};
 use super::{FunctionInfo, Input, NO_ANGLES, REFERENCE, alias_with, known, measured, number, theta};
 use crate::cite;
-use crate::models::{Param, Params};
+use crate::models::{Param, ParamError, Params};
 use crate::terms::thin_film::{self, Channel, Film};
 
 const N2: Param = number("n2", "index of the film", [0.1, 10.0], 1.33);
@@ -13,8 +13,8 @@ const THICKNESS: Param = measured("d_nm", "nm", "thickness of the film", [0.0, 1
 const WAVELENGTH: Param = measured("lambda_nm", "nm", "wavelength in vacuum", [1.0, 1e6], 550.0);
 const INCIDENCE: Input = Input::Incidence("the angle of incidence, in vacuum");
 
-fn film(p: &Params) -> Film {
-    Film { n2: p.number("n2"), n3: p.number("n3"), k3: p.number("k3"), d_nm: p.number("d_nm") }
+fn film(p: &Params) -> Result<Film, ParamError> {
+    Ok(Film { n2: p.number("n2")?, n3: p.number("n3")?, k3: p.number("k3")?, d_nm: p.number("d_nm")? })
 }
 
 /// The family.
@@ -41,8 +41,8 @@ pub static ALL: &[FunctionInfo] = &[
             REFERENCE,
         )],
         eval: |p, at| {
-            let value = thin_film::airy(&film(p), libm::cos(at.wi_theta), p.number("lambda_nm"));
-            Ok(polarised(p, value))
+            let value = thin_film::airy(&film(p)?, libm::cos(at.wi_theta), p.number("lambda_nm")?);
+            Ok(polarised(p, value)?)
         },
     },
     FunctionInfo {
@@ -72,12 +72,12 @@ pub static ALL: &[FunctionInfo] = &[
             REFERENCE,
         )],
         eval: |p, _| {
-            let channel = match p.choice("channel") {
+            let channel = match p.choice("channel")? {
                 "X" => Channel::X,
                 "Y" => Channel::Y,
                 _ => Channel::Z,
             };
-            Ok(thin_film::sensitivity(channel, p.number("opd_nm"), p.number("shift_rad")))
+            Ok(thin_film::sensitivity(channel, p.number("opd_nm")?, p.number("shift_rad")?))
         },
     },
     FunctionInfo {
@@ -111,8 +111,8 @@ pub static ALL: &[FunctionInfo] = &[
             "closed form: a film of index 1 is no film, and the matrix keeps white",
         )],
         eval: |p, at| {
-            let rgb = thin_film::rgb(&film(p), libm::cos(at.wi_theta), orders(p));
-            Ok(match p.choice("channel") {
+            let rgb = thin_film::rgb(&film(p)?, libm::cos(at.wi_theta), orders(p)?);
+            Ok(match p.choice("channel")? {
                 "R" => rgb[0],
                 "G" => rgb[1],
                 _ => rgb[2],
@@ -122,6 +122,6 @@ pub static ALL: &[FunctionInfo] = &[
 ];
 
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "declared to lie in [0, 100]")]
-fn orders(p: &Params) -> u32 {
-    p.number("orders").round() as u32
+fn orders(p: &Params) -> Result<u32, ParamError> {
+    Ok(p.number("orders")?.round() as u32)
 }

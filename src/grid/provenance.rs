@@ -22,7 +22,7 @@ pub struct Provenance {
     pub schema: u32,
     /// Program and version.
     pub tool: String,
-    /// Name of the recipe and blake3 of its canonical form.
+    /// Name of the recipe, and the identity of the table.
     pub recipe: RecipeId,
     /// Name of the table in its recipe; also the file stem.
     pub name: String,
@@ -86,7 +86,7 @@ pub struct SizeRecord {
 pub struct RecipeId {
     /// Name of the recipe.
     pub name: String,
-    /// blake3 of the canonical JSON of this table's resolved recipe and the program version.
+    /// The identity of the table: blake3 over everything that the bytes of its files depend on.
     pub hash: String,
 }
 

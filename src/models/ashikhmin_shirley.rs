@@ -47,10 +47,10 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let (rd, rs) = (params.number("rd"), params.number("rs"));
-    let mut matte = Part::new(1.0, Diffuse(Substrate::new(params)));
+    let (rd, rs) = (params.number("rd")?, params.number("rs")?);
+    let mut matte = Part::new(1.0, Diffuse(Substrate::new(params)?));
     matte.chance = rd * (1.0 - rs);
-    let mut gloss = Part::new(1.0, Specular::new(params));
+    let mut gloss = Part::new(1.0, Specular::new(params)?);
     gloss.chance = schlick::schlick_average(rs, 1.0);
     Ok(Box::new(Sum::new(vec![matte, gloss])))
 }

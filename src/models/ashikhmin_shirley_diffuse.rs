@@ -50,7 +50,7 @@ pub(super) const RS: Param =
         .also(&["Rs"]);
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    Ok(Box::new(Diffuse(Substrate::new(params))))
+    Ok(Box::new(Diffuse(Substrate::new(params)?)))
 }
 
 /// The lobe; also the diffuse part of the whole model.
@@ -60,8 +60,8 @@ pub(super) struct Substrate {
 }
 
 impl Substrate {
-    pub(super) fn new(params: &Params) -> Substrate {
-        Substrate { scale: params.number("rd") * (1.0 - params.number("rs")) }
+    pub(super) fn new(params: &Params) -> Result<Substrate, ParamError> {
+        Ok(Substrate { scale: params.number("rd")? * (1.0 - params.number("rs")?) })
     }
 }
 

@@ -60,7 +60,7 @@ pub(super) const NV: Param =
     Param::number("nv", "nv", "exponent along the bitangent", [0.0, 1e7], Preset::Of("nu"));
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    Ok(Box::new(Specular::new(params)))
+    Ok(Box::new(Specular::new(params)?))
 }
 
 /// `-ln` of the part of its peak below which the lobe is left out of integrals.
@@ -75,8 +75,8 @@ pub(super) struct Specular {
 }
 
 impl Specular {
-    pub(super) fn new(params: &Params) -> Specular {
-        Specular { rs: params.number("rs"), nu: params.number("nu"), nv: params.number("nv") }
+    pub(super) fn new(params: &Params) -> Result<Specular, ParamError> {
+        Ok(Specular { rs: params.number("rs")?, nu: params.number("nu")?, nv: params.number("nv")? })
     }
 
     fn root(&self) -> f64 {

@@ -57,7 +57,7 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let [kd, ks, p, q] = ["kd", "ks", "p", "q"].map(|id| params.number(id));
+    let [kd, ks, p, q] = params.numbers(["kd", "ks", "p", "q"])?;
     Ok(Box::new(Banks { kd, ks, p, q }))
 }
 

@@ -26,7 +26,7 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    microfacet::build(INFO.id, params, Beckmann::new, Fresnel::Dielectric { eta: params.number("eta") })
+    microfacet::build(INFO.id, params, Beckmann::new, Fresnel::Dielectric { eta: params.number("eta")? })
 }
 
 const ALSO: &[Alias] = &[];

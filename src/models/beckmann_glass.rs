@@ -43,11 +43,11 @@ pub static INFO: ModelInfo = ModelInfo {
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     let [x, y] = microfacet::alphas(INFO.id, params)?;
-    let eta = params.number("eta");
+    let eta = params.number("eta")?;
     Ok(Box::new(Glass {
         distribution: Beckmann::new(x, y),
         flat: x <= 0.0 || glass::no_interface(eta),
         eta,
-        across: glass::across(params),
+        across: glass::across(params)?,
     }))
 }

@@ -52,7 +52,7 @@ pub(super) fn normal_albedo(n: f64) -> f64 {
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     let [kd, ks] = at_most_one(INFO.id, params, ["kd", "ks"])?;
-    let n = params.number("n");
+    let n = params.number("n")?;
     Ok(Box::new(Sum::new(vec![
         Part::new(kd, Diffuse(Lambert { rho: 1.0 })),
         Part::new(ks, Blinn { n, scale: 1.0 / normal_albedo(n), over: Over::Nothing }),

@@ -47,7 +47,7 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let (kd, ks, n) = (params.number("kd"), params.number("ks"), params.number("n"));
+    let (kd, ks, n) = (params.number("kd")?, params.number("ks")?, params.number("n")?);
     let mut lobe = Part::new(ks, Blinn { n, scale: 1.0, over: Over::Cosine });
     lobe.chance = 8.0 * PI * ks / (n + 2.0);
     Ok(Box::new(Sum::new(vec![Part::new(PI * kd, Diffuse(Lambert { rho: 1.0 })), lobe])))

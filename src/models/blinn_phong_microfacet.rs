@@ -54,8 +54,8 @@ struct Grooves {
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     Ok(Box::new(HalfVectorLobe {
-        facets: Grooves { n: params.number("n") },
-        fresnel: Fresnel::Schlick { f0: params.number("f0"), f90: params.number("f90") },
+        facets: Grooves { n: params.number("n")? },
+        fresnel: Fresnel::Schlick { f0: params.number("f0")?, f90: params.number("f90")? },
         flat: false,
     }))
 }

@@ -44,7 +44,7 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let (kd, ks, n) = (params.number("kd"), params.number("ks"), params.number("n"));
+    let (kd, ks, n) = (params.number("kd")?, params.number("ks")?, params.number("n")?);
     let mut lobe = Part::new(ks, Blinn { n, scale: 1.0, over: Over::Nothing });
     lobe.chance = ks * normal_albedo(n);
     Ok(Box::new(Sum::new(vec![Part::new(PI * kd, Diffuse(Lambert { rho: 1.0 })), lobe])))

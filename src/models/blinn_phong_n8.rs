@@ -41,7 +41,7 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let (kd, ks, n) = (params.number("kd"), params.number("ks"), params.number("n"));
+    let (kd, ks, n) = (params.number("kd")?, params.number("ks")?, params.number("n")?);
     let scale = (n + 8.0) / (8.0 * PI);
     let mut lobe = Part::new(ks, Blinn { n, scale, over: Over::Nothing });
     lobe.chance = ks * scale * normal_albedo(n);

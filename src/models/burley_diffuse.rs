@@ -57,7 +57,7 @@ pub(super) const RHO: Param =
     Param::number("rho", "rho", "base reflectance", [0.0, 1.0], Preset::Value(1.0)).also(&["base"]);
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    Ok(Box::new(Diffuse(Burley { rho: params.number("rho"), r: params.number("r") })))
+    Ok(Box::new(Diffuse(Burley { rho: params.number("rho")?, r: params.number("r")? })))
 }
 
 /// `pi f / rho` of two Fresnel-like factors that share an F90; exactly reciprocal, as `1 + wi.wo` is.

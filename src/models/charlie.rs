@@ -69,7 +69,7 @@ pub(super) fn lobe(roughness: f64) -> ClothLobe<Charlie> {
 }
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    Ok(Box::new(lobe(params.number("roughness"))))
+    Ok(Box::new(lobe(params.number("roughness")?)))
 }
 
 impl Cloth for Charlie {

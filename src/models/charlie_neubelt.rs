@@ -49,7 +49,7 @@ struct Charlie {
 }
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    Ok(Box::new(ClothLobe(Charlie { roughness: params.number("roughness") })))
+    Ok(Box::new(ClothLobe(Charlie { roughness: params.number("roughness")? })))
 }
 
 impl Cloth for Charlie {

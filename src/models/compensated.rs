@@ -70,15 +70,15 @@ pub(super) enum Rule {
 pub(super) fn build(
     model: &'static str,
     params: &Params,
-    make: fn(&Params, &Parts) -> Rule,
+    make: fn(&Params, &Parts) -> Result<Rule, ParamError>,
 ) -> Result<Box<dyn Brdf>, ParamError> {
     let single = lobe(model, params, None)?;
     if single.mirror(1.0).is_some() {
         // a mirror loses nothing
         return Ok(single);
     }
-    let white = AlbedoCurve::shared(&key(params, true), &*lobe(model, params, Some(1.0))?);
-    let rule = make(params, &Parts { single: &*single, white: &white, key: key(params, false) });
+    let white = AlbedoCurve::shared(&key(params, true)?, &*lobe(model, params, Some(1.0))?);
+    let rule = make(params, &Parts { single: &*single, white: &white, key: key(params, false)? })?;
     if let Rule::Turquin { f0 } = rule {
         return Ok(Box::new(Scaled { single, white, f0 }));
     }
@@ -109,21 +109,24 @@ impl Parts<'_> {
 }
 
 /// Schlick's average of the parameters.
-pub(super) fn f_avg(params: &Params) -> f64 {
-    schlick::schlick_average(params.number("f0"), params.number("f90"))
+///
+/// # Errors
+/// [`ParamError`] where `f0` or `f90` are not declared.
+pub(super) fn f_avg(params: &Params) -> Result<f64, ParamError> {
+    Ok(schlick::schlick_average(params.number("f0")?, params.number("f90")?))
 }
 
 /// The base model, white if `fresnel` says so.
 fn lobe(model: &'static str, params: &Params, fresnel: Option<f64>) -> Result<Box<dyn Brdf>, ParamError> {
-    let base = params.choice("base");
+    let base = params.choice("base")?;
     let (info, _) = super::find(base)
         .ok_or_else(|| ParamError::Together { model, why: format!("no model is called {base}") })?;
-    let number = |id: &str| (id.to_owned(), Json::from(params.number(id)));
+    let number = |id: &str| Ok((id.to_owned(), Json::from(params.number(id)?)));
     let mut given: serde_json::Map<String, Json> =
-        [number("alpha"), number("f0"), number("f90")].into_iter().collect();
-    given.insert("masking".to_owned(), params.choice("masking").into());
+        [number("alpha")?, number("f0")?, number("f90")?].into_iter().collect();
+    given.insert("masking".to_owned(), params.choice("masking")?.into());
     if base == "student-t" {
-        given.extend([number("gamma")]);
+        given.extend([number("gamma")?]);
     }
     if let Some(f) = fresnel {
         given.insert("f0".to_owned(), f.into());
@@ -134,12 +137,12 @@ fn lobe(model: &'static str, params: &Params, fresnel: Option<f64>) -> Result<Bo
 }
 
 /// Names the lobe in full.
-fn key(params: &Params, white: bool) -> String {
-    let [alpha, gamma, f0, f90] = ["alpha", "gamma", "f0", "f90"].map(|id| params.number(id));
+fn key(params: &Params, white: bool) -> Result<String, ParamError> {
+    let [alpha, gamma, f0, f90] = params.numbers(["alpha", "gamma", "f0", "f90"])?;
     let (f0, f90) = if white { (1.0, 1.0) } else { (f0, f90) };
-    let (base, masking) = (params.choice("base"), params.choice("masking"));
+    let (base, masking) = (params.choice("base")?, params.choice("masking")?);
     let gamma = if base == "student-t" { gamma } else { 0.0 };
-    format!("{base} {masking} {alpha:e} {gamma:e} {f0:e} {f90:e}")
+    Ok(format!("{base} {masking} {alpha:e} {gamma:e} {f0:e} {f90:e}"))
 }
 
 /// The lobe that Kulla-Conty and Fdez-Aguera add.

@@ -51,11 +51,11 @@ struct CookTorrance {
 }
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let alpha = params.number("alpha");
+    let alpha = params.number("alpha")?;
     Ok(Box::new(CookTorrance {
         distribution: Beckmann::isotropic(alpha),
         alpha,
-        fresnel: Fresnel::Schlick { f0: params.number("f0"), f90: params.number("f90") },
+        fresnel: Fresnel::Schlick { f0: params.number("f0")?, f90: params.number("f90")? },
     }))
 }
 

@@ -51,7 +51,7 @@ struct Coat {
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     let facets =
-        Coat { alpha: clearcoat::alpha(params.number("gloss")), strength: params.number("clearcoat") };
+        Coat { alpha: clearcoat::alpha(params.number("gloss")?), strength: params.number("clearcoat")? };
     let fresnel = Fresnel::Schlick { f0: clearcoat::F0, f90: 1.0 };
     Ok(Box::new(HalfVectorLobe { facets, fresnel, flat: false }))
 }

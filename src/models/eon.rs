@@ -58,7 +58,7 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let (rho, fon) = (params.number("rho"), Fon::new(params.number("r")));
+    let (rho, fon) = (params.number("rho")?, Fon::new(params.number("r")?));
     let average = fon.average();
     let rho_ms = rho * rho * average / (1.0 - rho * fon.r() * fon.lost_average());
     Ok(Box::new(Diffuse(Eon { rho, rho_ms, fon })))

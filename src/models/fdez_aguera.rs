@@ -39,8 +39,7 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    compensated::build(INFO.id, params, |params, parts: &Parts<'_>| Rule::FdezAguera {
-        f_avg: compensated::f_avg(params),
-        coloured: parts.coloured(),
+    compensated::build(INFO.id, params, |params, parts: &Parts<'_>| {
+        Ok(Rule::FdezAguera { f_avg: compensated::f_avg(params)?, coloured: parts.coloured() })
     })
 }

@@ -55,7 +55,7 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let (rho, r) = (params.number("rho"), params.number("r"));
+    let (rho, r) = (params.number("rho")?, params.number("r")?);
     Ok(Box::new(Diffuse(Frostbite { scale: rho * (1.0 - r + r / 1.51), r })))
 }
 

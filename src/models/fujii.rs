@@ -62,7 +62,7 @@ pub(super) const R: Param =
         .swept("r", [0.0, 1.0], 1.0);
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    Ok(Box::new(Diffuse(Fujii { rho: params.number("rho"), fon: Fon::new(params.number("r")) })))
+    Ok(Box::new(Diffuse(Fujii { rho: params.number("rho")?, fon: Fon::new(params.number("r")?) })))
 }
 
 /// The lobe of FON for `rho` = 1, shared with EON.

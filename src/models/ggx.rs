@@ -27,7 +27,7 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let fresnel = Fresnel::Schlick { f0: params.number("f0"), f90: params.number("f90") };
+    let fresnel = Fresnel::Schlick { f0: params.number("f0")?, f90: params.number("f90")? };
     microfacet::build(INFO.id, params, Ggx::new, fresnel)
 }
 

@@ -26,7 +26,7 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let fresnel = Fresnel::Conductor { eta: params.number("eta"), k: params.number("k") };
+    let fresnel = Fresnel::Conductor { eta: params.number("eta")?, k: params.number("k")? };
     microfacet::build(INFO.id, params, Ggx::new, fresnel)
 }
 

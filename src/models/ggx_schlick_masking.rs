@@ -65,8 +65,8 @@ struct SchlickMasked {
 }
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let alpha = params.number("alpha");
-    let kind = match params.choice("k") {
+    let alpha = params.number("alpha")?;
+    let kind = match params.choice("k")? {
         "ibl" => K::Ibl,
         "analytic" => K::Analytic,
         _ => K::Schlick,
@@ -75,7 +75,7 @@ fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
         distribution: Ggx::isotropic(alpha),
         alpha,
         k: schlick_masking::k(kind, alpha),
-        fresnel: Fresnel::Schlick { f0: params.number("f0"), f90: params.number("f90") },
+        fresnel: Fresnel::Schlick { f0: params.number("f0")?, f90: params.number("f90")? },
     }))
 }
 

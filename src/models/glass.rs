@@ -8,7 +8,7 @@
 //! R and T are the parts of the flux that arrives along `wo`; R + T <= 1, the rest is masked.
 
 use super::microfacet::{Distribution, Fresnel, Masking};
-use super::{Brdf, Btdf, Param, Params, Sample};
+use super::{Brdf, Btdf, Param, ParamError, Params, Sample};
 use crate::integrate::facet::{self, Facet};
 use crate::integrate::stop::{Level, Trust, climb_sure};
 use crate::integrate::{Chart, Estimate, FacetLobe};
@@ -50,12 +50,15 @@ pub(super) fn no_interface(eta: f64) -> bool {
 }
 
 /// The masking that the parameters name.
-pub(super) fn across(params: &Params) -> Across {
-    match params.choice("masking") {
+///
+/// # Errors
+/// [`ParamError`] where none is declared.
+pub(super) fn across(params: &Params) -> Result<Across, ParamError> {
+    Ok(match params.choice("masking")? {
         "separable" => Across::Separable,
         "beta" => Across::Beta,
         _ => Across::Sum,
-    }
+    })
 }
 
 impl<D: Distribution> Glass<D> {

@@ -130,20 +130,20 @@ struct Lobe {
 }
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let square = |id: &str| params.number(id) * params.number(id);
-    let sheen = params.number("sheen");
-    let sheen_roughness = square("sheen_roughness");
+    let square = |id: &str| params.number(id).map(|v| v * v);
+    let sheen = params.number("sheen")?;
+    let sheen_roughness = square("sheen_roughness")?;
     let lobe = charlie::lobe(sheen_roughness);
     let curve = (sheen > 0.0).then(|| AlbedoCurve::shared(&format!("charlie {sheen_roughness:e}"), &lobe));
     let material = Arc::new(Material {
-        base_color: params.number("base_color"),
-        metallic: params.number("metallic"),
-        base: Ggx::isotropic(square("roughness")),
+        base_color: params.number("base_color")?,
+        metallic: params.number("metallic")?,
+        base: Ggx::isotropic(square("roughness")?),
         sheen,
         sheen_roughness,
         curve,
-        clearcoat: params.number("clearcoat"),
-        coat: Ggx::isotropic(square("clearcoat_roughness")),
+        clearcoat: params.number("clearcoat")?,
+        coat: Ggx::isotropic(square("clearcoat_roughness")?),
     });
     let part = |kind, chance: f64| Part {
         weight: 1.0,

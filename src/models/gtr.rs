@@ -62,10 +62,10 @@ struct Gtr {
 }
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let alpha = params.number("alpha");
+    let alpha = params.number("alpha")?;
     Ok(Box::new(HalfVectorLobe {
-        facets: Gtr { alpha, gamma: params.number("gamma"), masking: microfacet::masking(params) },
-        fresnel: Fresnel::Schlick { f0: params.number("f0"), f90: params.number("f90") },
+        facets: Gtr { alpha, gamma: params.number("gamma")?, masking: microfacet::masking(params)? },
+        fresnel: Fresnel::Schlick { f0: params.number("f0")?, f90: params.number("f90")? },
         flat: alpha <= 0.0,
     }))
 }

@@ -58,8 +58,8 @@ pub(super) fn lobe(alpha: f64, fresnel: Fresnel) -> HalfVectorLobe<Kelemen> {
 }
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let fresnel = Fresnel::Schlick { f0: params.number("f0"), f90: params.number("f90") };
-    Ok(Box::new(lobe(params.number("alpha"), fresnel)))
+    let fresnel = Fresnel::Schlick { f0: params.number("f0")?, f90: params.number("f90")? };
+    Ok(Box::new(lobe(params.number("alpha")?, fresnel)))
 }
 
 impl Facets for Kelemen {

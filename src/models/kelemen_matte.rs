@@ -53,8 +53,8 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let (alpha, f0, f90) = (params.number("alpha"), params.number("f0"), params.number("f90"));
-    let rho = params.number("rho");
+    let (alpha, f0, f90) = (params.number("alpha")?, params.number("f0")?, params.number("f90")?);
+    let rho = params.number("rho")?;
     let specular = kelemen::lobe(alpha, Fresnel::Schlick { f0, f90 });
     let curve = AlbedoCurve::shared(&format!("kelemen {alpha:e} {f0:e} {f90:e}"), &specular);
     let average = curve.missing_average();

@@ -61,13 +61,13 @@ struct Skin {
 }
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let (m, f0) = (params.number("m"), params.number("f0"));
-    let units = if params.choice("units") == "punctual" { 1.0 } else { FRAC_1_PI };
+    let (m, f0) = (params.number("m")?, params.number("f0")?);
+    let units = if params.choice("units")? == "punctual" { 1.0 } else { FRAC_1_PI };
     Ok(Box::new(Skin {
         lobe: kelemen::lobe(m, Fresnel::Schlick { f0, f90: 1.0 }),
         m,
         f0,
-        scale: params.number("rho_s") * units,
+        scale: params.number("rho_s")? * units,
     }))
 }
 

@@ -48,11 +48,11 @@ fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     compensated::build(INFO.id, params, rule)
 }
 
-fn rule(params: &Params, parts: &Parts<'_>) -> Rule {
-    let (f_avg, e_avg) = (compensated::f_avg(params), parts.e_avg());
-    let of = if params.choice("colour") == "slides" { ms::colour_slides } else { ms::colour_series };
+fn rule(params: &Params, parts: &Parts<'_>) -> Result<Rule, ParamError> {
+    let (f_avg, e_avg) = (compensated::f_avg(params)?, parts.e_avg());
+    let of = if params.choice("colour")? == "slides" { ms::colour_slides } else { ms::colour_series };
     let rest = 1.0 - f_avg * (1.0 - e_avg);
     // d/dE of F E / (1 - F (1 - E)) is F (1 - F) / rest^2
     let slope = if rest > 0.0 { f_avg * (1.0 - f_avg) / (rest * rest) } else { 0.0 };
-    Rule::KullaConty { colour: of(f_avg, e_avg), slope }
+    Ok(Rule::KullaConty { colour: of(f_avg, e_avg), slope })
 }

@@ -48,9 +48,9 @@ const COLUMNS: &[Column] = &[
 ];
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let rho_d = params.number("rho_d");
+    let rho_d = params.number("rho_d")?;
     let mut parts = vec![Part::new(rho_d, Diffuse(Lambert { rho: 1.0 }))];
-    for row in params.rows("lobes") {
+    for row in params.rows("lobes")? {
         if let &[cx, cy, cz, n, rho] = row.as_slice() {
             parts.push(part(INFO.id, [cx, cy, cz], n, rho)?);
         }

@@ -55,7 +55,7 @@ const fn coefficient(id: &'static str, default: f64) -> Param {
 }
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let [rho_d, rho_s, cx, cy, cz, n] = ["rho_d", "rho_s", "cx", "cy", "cz", "n"].map(|id| params.number(id));
+    let [rho_d, rho_s, cx, cy, cz, n] = params.numbers(["rho_d", "rho_s", "cx", "cy", "cz", "n"])?;
     Ok(Box::new(Sum::new(vec![
         Part::new(rho_d, Diffuse(Lambert { rho: 1.0 })),
         part(INFO.id, [cx, cy, cz], n, rho_s)?,

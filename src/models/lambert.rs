@@ -51,7 +51,7 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    Ok(Box::new(Diffuse(Lambert { rho: params.number("rho") })))
+    Ok(Box::new(Diffuse(Lambert { rho: params.number("rho")? })))
 }
 
 /// The lobe; also the diffuse part of other models.

@@ -53,7 +53,7 @@ struct Fibres {
 }
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    Ok(Box::new(ClothLobe(Fibres { roughness: params.number("roughness") })))
+    Ok(Box::new(ClothLobe(Fibres { roughness: params.number("roughness")? })))
 }
 
 impl Cloth for Fibres {

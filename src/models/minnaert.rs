@@ -57,7 +57,7 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    Ok(Box::new(Minnaert { rho: params.number("rho"), k: params.number("k") }))
+    Ok(Box::new(Minnaert { rho: params.number("rho")?, k: params.number("k")? }))
 }
 
 #[derive(Debug)]

@@ -47,7 +47,7 @@ struct Mirror {
 }
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let fresnel = Fresnel::Schlick { f0: params.number("f0"), f90: params.number("f90") };
+    let fresnel = Fresnel::Schlick { f0: params.number("f0")?, f90: params.number("f90")? };
     Ok(Box::new(Mirror { fresnel }))
 }
 

@@ -70,9 +70,9 @@ pub(super) const SIGMA: Param = Param {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let s2 = params.number("sigma") * params.number("sigma");
+    let s2 = params.number("sigma")? * params.number("sigma")?;
     Ok(Box::new(Diffuse(OrenNayar {
-        rho: params.number("rho"),
+        rho: params.number("rho")?,
         a: 1.0 - 0.5 * s2 / (s2 + 0.33),
         b: 0.45 * s2 / (s2 + 0.09),
     })))

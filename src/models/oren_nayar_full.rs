@@ -53,7 +53,7 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let (rho, sigma) = (params.number("rho"), params.number("sigma"));
+    let (rho, sigma) = (params.number("rho")?, params.number("sigma")?);
     let s2 = sigma * sigma;
     let steep = s2 / (s2 + 0.09);
     Ok(Box::new(Diffuse(OrenNayarFull {

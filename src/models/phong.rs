@@ -79,7 +79,7 @@ pub(super) fn at_most_one(
     params: &Params,
     ids: [&'static str; 2],
 ) -> Result<[f64; 2], ParamError> {
-    let [a, b] = ids.map(|id| params.number(id));
+    let [a, b] = params.numbers(ids)?;
     // the slack lets 0.1 + 0.9 and the like through
     if a + b <= 1.0 + 4.0 * f64::EPSILON {
         Ok([a, b])
@@ -97,7 +97,7 @@ pub(super) fn at_most_one(
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     let [kd, ks] = at_most_one(INFO.id, params, ["kd", "ks"])?;
-    let n = params.number("n");
+    let n = params.number("n")?;
     Ok(Box::new(Sum::new(vec![
         Part::new(kd, Diffuse(Lambert { rho: 1.0 })),
         Part::new(ks, Cosine::phong(n, (n + 2.0) / TAU, Over::Nothing)),

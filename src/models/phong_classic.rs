@@ -44,7 +44,7 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let (kd, ks, n) = (params.number("kd"), params.number("ks"), params.number("n"));
+    let (kd, ks, n) = (params.number("kd")?, params.number("ks")?, params.number("n")?);
     let mut lobe = Part::new(ks, Cosine::phong(n, 1.0, Over::Cosine));
     lobe.chance = ks * TAU / (n + 1.0);
     let mut matte = Part::new(PI * kd, Diffuse(Lambert { rho: 1.0 }));

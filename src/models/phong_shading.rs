@@ -59,7 +59,7 @@ impl Reflector for Falloff {
 }
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let (kd, ks, n) = (params.number("kd"), params.number("ks"), params.number("n"));
+    let (kd, ks, n) = (params.number("kd")?, params.number("ks")?, params.number("n")?);
     Ok(Box::new(Sum::new(vec![
         Part::new(kd, Diffuse(Falloff)),
         Part::new(ks, Cosine::phong(n, 1.0, Over::Nothing)),

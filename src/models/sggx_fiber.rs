@@ -46,7 +46,7 @@ struct Layer {
 }
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    Ok(Box::new(ClothLobe(Layer { sigma: params.number("sigma") })))
+    Ok(Box::new(ClothLobe(Layer { sigma: params.number("sigma")? })))
 }
 
 impl Cloth for Layer {

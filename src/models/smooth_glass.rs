@@ -50,7 +50,7 @@ struct SmoothGlass {
 }
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    Ok(Box::new(SmoothGlass { eta: params.number("eta") }))
+    Ok(Box::new(SmoothGlass { eta: params.number("eta")? }))
 }
 
 /// 0, `None` and 0: deltas have no value and no density.

@@ -57,7 +57,7 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let fresnel = Fresnel::Schlick { f0: params.number("f0"), f90: params.number("f90") };
-    let gamma = params.number("gamma");
+    let fresnel = Fresnel::Schlick { f0: params.number("f0")?, f90: params.number("f90")? };
+    let gamma = params.number("gamma")?;
     microfacet::build(INFO.id, params, |x, y| StudentT::new(x, y, gamma), fresnel)
 }

@@ -54,10 +54,10 @@ struct Grooves {
 }
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let alpha = params.number("alpha");
+    let alpha = params.number("alpha")?;
     Ok(Box::new(HalfVectorLobe {
         facets: Grooves { distribution: Beckmann::isotropic(alpha) },
-        fresnel: Fresnel::Schlick { f0: params.number("f0"), f90: params.number("f90") },
+        fresnel: Fresnel::Schlick { f0: params.number("f0")?, f90: params.number("f90")? },
         flat: alpha <= 0.0,
     }))
 }

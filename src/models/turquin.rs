@@ -38,5 +38,7 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    compensated::build(INFO.id, params, |params, _: &Parts<'_>| Rule::Turquin { f0: params.number("f0") })
+    compensated::build(INFO.id, params, |params, _: &Parts<'_>| {
+        Ok(Rule::Turquin { f0: params.number("f0")? })
+    })
 }

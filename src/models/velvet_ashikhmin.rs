@@ -54,7 +54,7 @@ struct Velvet {
 }
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    Ok(Box::new(ClothLobe(Velvet { sigma: params.number("sigma") })))
+    Ok(Box::new(ClothLobe(Velvet { sigma: params.number("sigma")? })))
 }
 
 impl Cloth for Velvet {

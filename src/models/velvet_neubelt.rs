@@ -61,8 +61,8 @@ struct Velvet {
 }
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let fresnel = Fresnel::Schlick { f0: params.number("f0"), f90: params.number("f90") };
-    Ok(Box::new(ClothLobe(Velvet { alpha: params.number("alpha"), fresnel })))
+    let fresnel = Fresnel::Schlick { f0: params.number("f0")?, f90: params.number("f90")? };
+    Ok(Box::new(ClothLobe(Velvet { alpha: params.number("alpha")?, fresnel })))
 }
 
 impl Cloth for Velvet {

@@ -58,11 +58,18 @@ pub(super) const RHO_S: Param =
     Param::number("rho_s", "rho_s", "specular reflectance", [0.0, 1.0], Preset::Value(0.5));
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    Ok(assemble([params.number("rho_d"), params.number("rho_s")], params, Norm::Ward))
+    assemble(params.numbers(["rho_d", "rho_s"])?, params, Norm::Ward)
 }
 
 /// A diffuse part and a lobe in one of its normalisations.
-pub(super) fn assemble([rho_d, rho_s]: [f64; 2], params: &Params, norm: Norm) -> Box<dyn Brdf> {
-    let lobe = Ward::new(params.number("alpha_x"), params.number("alpha_y"), norm);
-    Box::new(Sum::new(vec![Part::new(rho_d, Diffuse(Lambert { rho: 1.0 })), Part::new(rho_s, lobe)]))
+///
+/// # Errors
+/// [`ParamError`] for widths that are not declared.
+pub(super) fn assemble(
+    [rho_d, rho_s]: [f64; 2],
+    params: &Params,
+    norm: Norm,
+) -> Result<Box<dyn Brdf>, ParamError> {
+    let lobe = Ward::new(params.number("alpha_x")?, params.number("alpha_y")?, norm);
+    Ok(Box::new(Sum::new(vec![Part::new(rho_d, Diffuse(Lambert { rho: 1.0 })), Part::new(rho_s, lobe)])))
 }

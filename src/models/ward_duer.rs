@@ -41,5 +41,5 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    Ok(assemble([params.number("rho_d"), params.number("rho_s")], params, Norm::Duer))
+    assemble(params.numbers(["rho_d", "rho_s"])?, params, Norm::Duer)
 }

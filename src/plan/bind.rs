@@ -382,7 +382,7 @@ fn check_split(bound: &Bound, path: &Path, keys: &[(String, String)], faults: &m
     let (ModelUse::Split(_), Some((_, params))) = (kind.model, &bound.spec.model) else { return };
     for (id, key) in keys {
         let Some(id) = ["f0", "f90"].into_iter().find(|f| f == id) else { continue };
-        let got = params.number(id);
+        let Ok(got) = params.number(id) else { continue };
         if (got - 1.0).abs() > 0.0 {
             let path = path.key("params").key(key);
             faults.value(path, Fault::SplitFresnel { kind: kind.id, key: id, got });

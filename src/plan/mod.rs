@@ -13,6 +13,10 @@
 //! [`TableRequest`] has a field a key; see its file for what a new key takes. Judging it reports every fault with its [`Place`], a path
 //! into the request (`table[2].axis[1].domain`). No file is known here: whoever made the request finds the place in it.
 //!
+//! # Another sort of unit
+//! What is no table (a map, a filtered picture) gets files of its own beside `request.rs` and `table.rs`, a list in [`Plan`] beside
+//! `tables`, and an identity that begins with [`identity::Hasher::new`] of its own word. Its files go through [`Plan::files`].
+//!
 //! # A planned table
 //! [`PlannedTable`] holds the request with every default filled in, what it is bound to, its [`Output`]s, and its
 //! [`identity`]. After this room there are no words left to look up: an output holds its encoder and storage.

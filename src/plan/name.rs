@@ -5,7 +5,7 @@ use super::faults::Faults;
 use super::output::{self, Output};
 use super::place::Path;
 use super::request::{Draft, TableRequest};
-use crate::encode::Encoder;
+use crate::encode::{ENCODERS, Encoder};
 use std::collections::HashSet;
 
 /// Most characters of a name.
@@ -110,10 +110,16 @@ fn shared(a: &Draft, file: &str, b: &Draft, theirs: &str) -> Option<String> {
         |ok: fn(&dyn Encoder) -> bool| all.iter().all(|l| !l.is_empty() && l.iter().all(|o| ok(o.encoder)));
     match () {
         () if whole(|e| e.is_bare()) => None,
-        () if !whole(|e| e.joins()) => Some(
-            "only containers without a header (raw, text) hold one table behind the other, ktx2 in layers and exr in parts"
-                .to_owned(),
-        ),
+        () if !whole(|e| e.joins()) => {
+            let (bare, others): (Vec<_>, Vec<_>) =
+                ENCODERS.iter().filter(|e| e.joins()).partition(|e| e.is_bare());
+            let ids = |all: Vec<&&dyn Encoder>| all.iter().map(|e| e.id()).collect::<Vec<_>>().join(", ");
+            Some(format!(
+                "only containers without a header ({}) hold one table behind the other, and {} tables as parts or layers",
+                ids(bare),
+                ids(others)
+            ))
+        }
         () if a.request.outputs != b.request.outputs || lengths(a) != lengths(b) => {
             Some("the layers and parts of a file have one size, storage and options".to_owned())
         }

@@ -152,7 +152,7 @@ pub(super) fn check_file(request: &TableRequest, path: &Path, faults: &mut Fault
             && let Some(output) = outputs.iter().find(|o| !o.encoder.is_bare())
         {
             let why = format!("{} has no place for `{key}`", output.encoder.id());
-            faults.value(path.key(key), fault(why, "take the container text or raw"));
+            faults.value(path.key(key), fault(why, "take a container without a header, such as text"));
         }
     }
 }

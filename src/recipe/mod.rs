@@ -66,7 +66,7 @@
 //! and a remedy. A file with syntax errors is checked for nothing else: what they leave of it cannot be trusted.
 //!
 //! # Canonical form
-//! [`PlannedTable::canonical`] is the table with every default filled in, under the keys of the file. Two recipes that
+//! [`PlannedTable::canonical`](crate::plan::PlannedTable::canonical) is the table with every default filled in, under the keys of the file. Two recipes that
 //! mean the same have the same canonical form and the same hash, whatever their spelling. It is itself a recipe: [`text`] writes it.
 //!
 //! ```
@@ -97,7 +97,6 @@ mod section;
 mod span;
 mod write;
 
-pub use crate::plan::{Fault, Output, Plan, PlanError, PlannedTable, Sizing, TableRequest};
 pub use diagnostic::{Diagnostic, RecipeError};
 pub use engine::{ENGINES, Engine, EngineFile, Reader, Shipped, engine};
 pub use load::{LoadError, load};
@@ -106,6 +105,7 @@ pub use write::text;
 
 use crate::plan::faults::Faults;
 use crate::plan::resolve::resolve;
+use crate::plan::{Fault, Plan};
 
 /// Most bytes of a recipe file.
 pub const MAX_BYTES: usize = 1 << 20;

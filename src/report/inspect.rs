@@ -1,7 +1,10 @@
 //! Everything that a picture file holds, as text.
 
 use super::text::{Lines, counted, number};
-use crate::encode::read::{Claim, Image, Plane};
+use crate::encode::{
+    self,
+    read::{Claim, Image, Plane},
+};
 use crate::grid::provenance::{AxisRecord, Integration, LawRecord, LawResult, Spread, Subject};
 use crate::grid::table::{Extreme, place};
 use crate::grid::{Direction, Provenance, Texel};
@@ -98,15 +101,11 @@ fn axis(lines: &mut Lines, letter: &str, r: &AxisRecord) {
 /// What the samples are, measured, and what they mean if that is known.
 fn planes(lines: &mut Lines, image: &Image, p: Option<&Provenance>) {
     lines.plain("Channels");
+    // Most containers have no names: say which component of the pixel it is.
+    let encoder = encode::encoder(image.format).filter(|_| p.is_some());
+    let colours = encoder.map_or(&[][..], |e| e.colours(image.channels.len()));
     for (i, plane) in image.channels.iter().enumerate() {
-        // Most containers have no names: say which component of the pixel it is.
-        let colour = match (image.format, p, image.channels.len()) {
-            ("png", Some(_), 1) => "grey, ",
-            ("png" | "ktx2" | "dds" | "hdr", Some(_), _) => {
-                ["red, ", "green, ", "blue, ", "alpha, "].get(i).copied().unwrap_or_default()
-            }
-            _ => "",
-        };
+        let colour = colours.get(i).map_or_else(String::new, |c| format!("{c}, "));
         lines.item(&plane.name, &format!("{colour}{}", measured(plane)));
         if let Some(channel) = p.and_then(|p| p.channels.iter().find(|c| c.id == plane.name)) {
             let [lo, hi] = channel.range.map(number);

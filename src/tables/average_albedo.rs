@@ -75,9 +75,9 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
 
 impl Baker for AverageAlbedo {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
-        let params = self.sides.sweep.params(at);
+        let params = self.sides.sweep.params(at)?;
         let models = self.sides.models(at)?;
-        let range = Range::of(params.number("alpha"), params.number("eta"), self.sides.inside());
+        let range = Range::of(params.optional("alpha"), params.optional("eta"), self.sides.inside());
         average_of(&range, models.turns(), self.sides.channels(), tolerance, |view, tolerance| {
             self.sides.at(&models, view, tolerance)
         })
@@ -100,13 +100,13 @@ pub struct Range {
 }
 
 impl Range {
-    /// For a width (NaN: a smooth albedo), a relative index (NaN: none) and the side it is seen from.
+    /// For a width (none: a smooth albedo), a relative index if there is one, and the side it is seen from.
     #[must_use]
-    pub fn of(alpha: f64, eta: f64, inside: bool) -> Range {
-        let scale = if alpha.is_finite() { alpha.clamp(1e-4, 1.0) } else { 1.0 };
+    pub fn of(alpha: Option<f64>, eta: Option<f64>, inside: bool) -> Range {
+        let scale = alpha.map_or(1.0, |alpha| alpha.clamp(1e-4, 1.0));
         // total reflection: from inside for eta > 1, from above for eta < 1
-        let denser = if inside { eta.min(1.0 / eta) } else { eta };
-        let critical = if denser < 1.0 { fresnel::cos_critical(denser) } else { 0.0 };
+        let denser = eta.map(|eta| if inside { eta.min(1.0 / eta) } else { eta });
+        let critical = denser.filter(|eta| *eta < 1.0).map_or(0.0, fresnel::cos_critical);
         let panels = if critical > 0.0 {
             vec![[0.0, 0.5 * critical], [critical, 0.5 * critical], [critical, 1.0]]
         } else {
@@ -133,8 +133,8 @@ impl Range {
 ///
 /// # Errors
 /// As [`integrate`].
-pub fn average(model: &dyn Brdf, scale: f64, tolerance: f64) -> Result<Estimate, TexelError> {
-    let range = Range::of(scale, f64::NAN, false);
+pub fn average(model: &dyn Brdf, alpha: Option<f64>, tolerance: f64) -> Result<Estimate, TexelError> {
+    let range = Range::of(alpha, None, false);
     average_of(&range, model.turns(), 1, tolerance, |view, tolerance| {
         integrate(model, view, &[Functional::One], tolerance)
     })

@@ -82,7 +82,7 @@ struct Table {
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     Ok(Box::new(Table {
         path: spec.coordinate("path")?,
-        sigma: ["sigma_r", "sigma_g", "sigma_b"].map(|id| spec.params.number(id)),
+        sigma: spec.params.numbers(["sigma_r", "sigma_g", "sigma_b"])?,
         lost: spec.roles().iter().any(|role| matches!(role, Role::Lost(_))),
     }))
 }

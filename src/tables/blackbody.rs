@@ -108,7 +108,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     Ok(Box::new(Table {
         temperature: spec.coordinate("temperature")?,
         glow: glows.first().copied().unwrap_or(Glow::Hue),
-        reference: luminance(spec.params.number("reference")),
+        reference: luminance(spec.params.number("reference")?),
         spectrum: spectrum::plain(),
     }))
 }

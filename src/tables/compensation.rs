@@ -125,8 +125,8 @@ impl Compensation {
         let e = integrate(&*model, self.sweep.view(at), &[Functional::One], inner)?;
         let mut all = Estimate { value: [0.0; MAX_CHANNELS], error: [0.0; MAX_CHANNELS], ..e };
         let avg = if self.average {
-            let params = self.sweep.params(at);
-            self.averages.get(&params, inner, || average(&*model, params.number("alpha"), inner))?
+            let params = self.sweep.params(at)?;
+            self.averages.get(&params, inner, || average(&*model, params.optional("alpha"), inner))?
         } else {
             Estimate::exact([0.0; MAX_CHANNELS])
         };

@@ -90,7 +90,9 @@ struct Table {
 /// What the table's values integrate to, of each channel.
 #[must_use]
 pub fn factor(spec: &Spec, profile: &Profile) -> [f64; 3] {
-    if spec.params.choice("scale") == "albedo" { profile.total() } else { [1.0; 3] }
+    // kinds without the choice are not scaled
+    let scaled = spec.params.choice("scale").is_ok_and(|word| word == "albedo");
+    if scaled { profile.total() } else { [1.0; 3] }
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {

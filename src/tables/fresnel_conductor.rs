@@ -109,7 +109,7 @@ struct Table {
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
-    let metal = metals::find(spec.params.choice("metal"));
+    let metal = metals::find(spec.params.choice("metal")?);
     let daylight = spec.roles().iter().any(|role| is_colour(*role));
     let channels = spec.each(|role| match role {
         Role::Metal(p, band) => Some((p, band)),
@@ -120,7 +120,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     Ok(Box::new(Table {
         mu: spec.coordinate("mu")?,
         axes: [spec.axis("n"), spec.axis("k")],
-        index: [spec.params.number("n"), spec.params.number("k")],
+        index: [spec.params.number("n")?, spec.params.number("k")?],
         metal,
         channels,
         spectrum: daylight.then(|| spectrum::daylight_with(rows)),

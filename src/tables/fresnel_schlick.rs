@@ -97,17 +97,17 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
 impl Baker for Table {
     fn texel(&self, at: &[f64], _tolerance: f64) -> Result<Estimate, TexelError> {
         let number = |id: &'static str| {
-            self.swept.iter().find(|s| s.1 == id).map_or_else(|| self.params.number(id), |s| at[s.0])
+            self.swept.iter().find(|s| s.1 == id).map_or_else(|| self.params.number(id), |s| Ok(at[s.0]))
         };
         let mu = at[self.mu];
-        let f = match self.params.choice("variant") {
+        let f = match self.params.choice("variant")? {
             "generalised" => {
-                schlick::schlick_generalised(number("f0"), number("f90"), number("exponent"), mu)
+                schlick::schlick_generalised(number("f0")?, number("f90")?, number("exponent")?, mu)
             }
-            "f82-tint" => schlick::f82_tint_unclamped(number("f0"), number("tint"), mu),
-            "lazanyi" => lazanyi::lazanyi(number("n"), number("k"), number("a"), number("q"), mu),
-            "dielectric" => dielectric(mu, number("eta")),
-            _ => schlick::schlick(number("f0"), number("f90"), mu),
+            "f82-tint" => schlick::f82_tint_unclamped(number("f0")?, number("tint")?, mu),
+            "lazanyi" => lazanyi::lazanyi(number("n")?, number("k")?, number("a")?, number("q")?, mu),
+            "dielectric" => dielectric(mu, number("eta")?),
+            _ => schlick::schlick(number("f0")?, number("f90")?, mu),
         };
         let mut value = [0.0; MAX_CHANNELS];
         value[0] = if self.clamped && !f.is_nan() { f.clamp(0.0, 1.0) } else { f };

@@ -96,7 +96,7 @@ struct Schlick {
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
-    let dielectric = spec.params.choice("curve") == "dielectric";
+    let dielectric = spec.params.choice("curve")? == "dielectric";
     let [id, other] = if dielectric { ["eta", "exponent"] } else { ["exponent", "eta"] };
     if let Some(idle) = spec.axis(other) {
         let axis = spec.grid.axes()[idle].quantity.id;
@@ -112,7 +112,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         })?,
         dielectric,
         axis: spec.axis(id),
-        fixed: spec.params.number(id),
+        fixed: spec.params.number(id)?,
     }))
 }
 

@@ -151,9 +151,9 @@ impl Glass {
 
     /// Means from above and from inside.
     fn means(&self, at: &[f64], models: [&dyn Brdf; 2], tolerance: f64) -> Result<Estimate, TexelError> {
-        let params = self.sweep.params(at);
+        let params = self.sweep.params(at)?;
         self.averages.get(&params, tolerance, || {
-            let range = Range::of(params.number("alpha"), params.number("eta"), true);
+            let range = Range::of(params.optional("alpha"), params.optional("eta"), true);
             let turns = models.iter().any(|m| m.turns());
             average_of(&range, turns, 2, tolerance, |view, tolerance| {
                 let mut both = missing(models[0], view, tolerance)?;
@@ -195,7 +195,7 @@ impl Glass {
         let inside = one(Side::Inside, &*models[1])?;
         let averages = self.wants(Part::Average) || self.wants(Part::Share);
         let means = if averages { self.means(at, [&*models[0], &*models[1]], inner)? } else { nothing };
-        let shares = shares(&means, self.sweep.params(at).number("eta"));
+        let shares = shares(&means, self.sweep.params(at)?.number("eta")?);
         let mut all = nothing;
         // means are shared by the texels of a row and counted by none: who computed them depends on the threads
         all.evaluations = above.evaluations.saturating_add(inside.evaluations);

@@ -81,7 +81,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     Ok(Box::new(Table {
         mu: spec.coordinate("mu")?,
         alpha: spec.coordinate("alpha")?,
-        distribution: spec.params.choice("distribution"),
+        distribution: spec.params.choice("distribution")?,
     }))
 }
 

@@ -99,7 +99,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         phi_d: spec.coordinate("phi_d")?,
         theta_d: spec.coordinate("theta_d")?,
         theta_h: spec.coordinate("theta_h")?,
-        factor: ["red", "green", "blue"].map(|id| spec.params.number(id)),
+        factor: spec.params.numbers(["red", "green", "blue"])?,
     }))
 }
 

@@ -77,7 +77,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     Ok(Box::new(Ndf {
         mu: spec.coordinate("mu_m")?,
         alpha: spec.coordinate("alpha")?,
-        beckmann: spec.params.choice("distribution") == "beckmann",
+        beckmann: spec.params.choice("distribution")? == "beckmann",
         relative: spec.each(|role| match role {
             Role::Distribution { relative } => Some(relative),
             _ => None,

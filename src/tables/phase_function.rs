@@ -7,7 +7,7 @@ use super::{
 use crate::cite;
 use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
-use crate::models::{Param, Params, Preset};
+use crate::models::{Param, ParamError, Params, Preset};
 use crate::terms::phase;
 
 /// Parameters: which phase function, and its numbers.
@@ -98,14 +98,16 @@ pub struct Phase {
 
 impl Phase {
     /// From the parameters of a table kind; `g` from an axis, if one sweeps it.
-    #[must_use]
-    pub fn new(params: &Params, g: Option<f64>) -> Phase {
-        Phase {
-            id: params.choice("phase"),
-            g: g.unwrap_or_else(|| params.number("g")),
-            alpha: params.number("draine_alpha"),
-            diameter: params.number("diameter"),
-        }
+    ///
+    /// # Errors
+    /// [`ParamError`] for a kind that does not declare them.
+    pub fn new(params: &Params, g: Option<f64>) -> Result<Phase, ParamError> {
+        Ok(Phase {
+            id: params.choice("phase")?,
+            g: g.map_or_else(|| params.number("g"), Ok)?,
+            alpha: params.number("draine_alpha")?,
+            diameter: params.number("diameter")?,
+        })
     }
 
     /// The density at an angle, 1/sr; `1 - cos` is formed without a difference.
@@ -164,15 +166,18 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
 
 impl Baker for Table {
     fn texel(&self, at: &[f64], _tolerance: f64) -> Result<Estimate, TexelError> {
-        let phase = Phase::new(&self.params, self.g.map(|i| at[i]));
+        let phase = Phase::new(&self.params, self.g.map(|i| at[i]))?;
         let mut value = [0.0; MAX_CHANNELS];
         value[0] = phase.at(at[self.deflection]) / if self.relative { phase.largest() } else { 1.0 };
         super::closed_form(value, 1)
     }
 
     fn rule(&self) -> String {
-        if self.relative && self.g.is_none() {
-            return format!("closed form, divided by {:e} 1/sr", Phase::new(&self.params, None).largest());
+        if self.relative
+            && self.g.is_none()
+            && let Ok(phase) = Phase::new(&self.params, None)
+        {
+            return format!("closed form, divided by {:e} 1/sr", phase.largest());
         }
         "closed form".to_owned()
     }

@@ -73,14 +73,14 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
 
 impl Baker for Table {
     fn texel(&self, at: &[f64], _tolerance: f64) -> Result<Estimate, TexelError> {
-        let phase = Phase::new(&self.params, self.g.map(|i| at[i]));
+        let phase = Phase::new(&self.params, self.g.map(|i| at[i]))?;
         let cos = phase.sample(at[self.u]);
         let mut value = [0.0; MAX_CHANNELS];
         value[0] = if self.angle { libm::acos(cos) } else { cos };
         let mut e = Estimate::exact(value);
         // roots are found to the rounding of the distribution, whose slope is 2 pi p; an error of the cosine is more of the
         // angle near 0 or pi
-        let root = match self.params.choice("phase") {
+        let root = match self.params.choice("phase")? {
             "fog" => 1e-12,
             "draine" => 1e-14,
             _ => 0.0,
@@ -92,7 +92,7 @@ impl Baker for Table {
     }
 
     fn rule(&self) -> String {
-        match self.params.choice("phase") {
+        match self.params.choice("phase").unwrap_or_default() {
             "draine" | "fog" => "Newton's method in a bracket on the closed cumulative distribution",
             _ => "closed form",
         }

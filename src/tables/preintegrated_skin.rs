@@ -89,7 +89,7 @@ struct Skin {
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     let profile = Profile::new(spec)?;
-    let sphere = spec.params.choice("over") == "sphere";
+    let sphere = spec.params.choice("over")? == "sphere";
     if profile.is_singular() && !sphere {
         let why = "profile burley has no integral over a ring (R grows as 1/r); set over = \"sphere\"";
         return Err(ParamError::Together { model: spec.kind.id, why: why.to_owned() }.into());

@@ -140,23 +140,26 @@ impl Profile {
     /// [`BindError::Param`] for Gaussians of which some channel has no weight.
     pub fn new(spec: &Spec) -> Result<Profile, BindError> {
         let p = &spec.params;
-        let rgb = |stem: &str| COLOURS.map(|c| p.number(&format!("{stem}_{c}")));
-        match p.choice("profile") {
+        let rgb = |stem: &str| -> Result<Rgb, ParamError> {
+            let [r, g, b] = COLOURS.map(|c| p.number(&format!("{stem}_{c}")));
+            Ok([r?, g?, b?])
+        };
+        match p.choice("profile")? {
             "burley" => {
-                let (total, length) = (rgb("albedo"), rgb("length"));
-                let fit = fit(p);
+                let (total, length) = (rgb("albedo")?, rgb("length")?);
+                let fit = fit(p)?;
                 let scale = [0, 1, 2].map(|c| length[c] / burley_diffusion::scale(fit, total[c]));
                 Ok(Profile::Burley { scale, total })
             }
             "dipole" => {
-                let (sigma_a, sigma_s, eta) = (rgb("sigma_a"), rgb("sigma_s"), p.number("eta"));
+                let (sigma_a, sigma_s, eta) = (rgb("sigma_a")?, rgb("sigma_s")?, p.number("eta")?);
                 Ok(Profile::Dipole([0, 1, 2].map(|c| Dipole {
                     sigma_a: sigma_a[c],
                     sigma_s: sigma_s[c],
                     eta,
                 })))
             }
-            "gaussians" => Ok(gaussians(spec.kind.id, p.rows("gaussians"))?),
+            "gaussians" => Ok(gaussians(spec.kind.id, p.rows("gaussians")?)?),
             _ => {
                 let weights = |i: usize| skin::WEIGHTS.map(|w| w[i]);
                 let lobes = skin::VARIANCES.iter().enumerate().map(|(i, &v)| (v, weights(i))).collect();
@@ -302,12 +305,12 @@ fn sources(dipole: &Dipole) -> (f64, [f64; 2]) {
     ((3.0 * dipole.sigma_a * sigma_t).sqrt(), [1.0 / sigma_t, image / sigma_t])
 }
 
-fn fit(p: &Params) -> Fit {
-    match p.choice("fit") {
+fn fit(p: &Params) -> Result<Fit, ParamError> {
+    Ok(match p.choice("fit")? {
         "searchlight" => Fit::Searchlight,
         "diffuse" => Fit::Diffuse,
         _ => Fit::DiffuseMeanFreePath,
-    }
+    })
 }
 
 fn gaussians(kind: &'static str, rows: &[Vec<f64>]) -> Result<Profile, ParamError> {

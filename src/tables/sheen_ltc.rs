@@ -179,7 +179,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     Ok(Box::new(Sheen {
         mu: spec.coordinate("mu")?,
         roughness: spec.axis("r"),
-        fixed: spec.params.number("r"),
+        fixed: spec.params.number("r")?,
         parts,
         fits,
         solved: Mutex::default(),

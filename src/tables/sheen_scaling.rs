@@ -83,7 +83,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
             Role::Albedo(..) => Some(false),
             _ => None,
         })?,
-        sheen: spec.params.number("sheen"),
+        sheen: spec.params.number("sheen")?,
     }))
 }
 

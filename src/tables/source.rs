@@ -45,7 +45,9 @@ impl Source {
     #[must_use]
     pub fn applies(&self, spec: &Spec) -> bool {
         let roles = self.roles.is_none_or(|of| spec.layout.channels.iter().any(|c| of(c.role)));
-        let choice = self.choice.is_none_or(|(param, words)| words.contains(&spec.params.choice(param)));
+        let choice = self
+            .choice
+            .is_none_or(|(param, words)| spec.params.choice(param).is_ok_and(|word| words.contains(&word)));
         roles && choice && (!self.defaults || has_default(spec))
     }
 }
@@ -60,7 +62,10 @@ pub fn all(kind: &TableInfo) -> Vec<String> {
 /// Has a parameter of the kind that no axis sweeps its default?
 fn has_default(spec: &Spec) -> bool {
     let Ok(defaults) = Params::resolve(spec.kind.id, spec.kind.params, []) else { return false };
-    let same = |id: &str| (spec.params.number(id) - defaults.number(id)).abs() <= 0.0;
+    let same = |id: &str| {
+        let both = spec.params.number(id).ok().zip(defaults.number(id).ok());
+        both.is_some_and(|(a, b)| (a - b).abs() <= 0.0)
+    };
     spec.kind.params.iter().any(|p| matches!(p.kind, Kind::Number { .. }) && same(p.id))
 }
 

@@ -243,7 +243,9 @@ impl Spec {
                 *id = info.measured(id).map_or(*id, |p| p.id);
             }
             for leader in ids.clone() {
-                let follows = |id: &&str| (params.number(id) - params.number(leader)).abs() == 0.0;
+                let same =
+                    |a: &str, b: &str| Some((params.number(a).ok()? - params.number(b).ok()?).abs() == 0.0);
+                let follows = |id: &&str| same(id, leader) == Some(true);
                 ids.extend(info.followers(leader).filter(follows));
             }
         }
@@ -254,6 +256,14 @@ impl Spec {
     #[must_use]
     pub fn axis(&self, base_id: &str) -> Option<usize> {
         self.grid.axes().iter().position(|a| a.quantity.base_id() == base_id)
+    }
+
+    /// A number of the kind at a point: that of the axis which sweeps it, else the one that is fixed.
+    ///
+    /// # Errors
+    /// [`ParamError::Undeclared`] for one that the kind does not have.
+    pub fn number(&self, id: &str, at: &[f64]) -> Result<f64, ParamError> {
+        self.axis(id).map_or_else(|| self.params.number(id), |i| Ok(at[i]))
     }
 
     /// Number of the axis of a coordinate that the kind must have.

@@ -62,20 +62,22 @@ impl Sweep {
     }
 
     /// Parameters at a point.
-    #[must_use]
-    pub fn params(&self, at: &[f64]) -> Params {
+    ///
+    /// # Errors
+    /// [`ParamError`](crate::models::ParamError) for an axis of none.
+    pub fn params(&self, at: &[f64]) -> Result<Params, crate::models::ParamError> {
         let mut params = self.params.clone();
         for &(i, id) in &self.swept {
-            let before = params.number(id);
+            let before = params.number(id)?;
             params.set(id, at[i]);
             // alpha_x and alpha_y follow alpha, nv follows nu, unless they were set apart
             for other in self.info.followers(id) {
-                if (params.number(other) - before).abs() == 0.0 {
+                if (params.number(other)? - before).abs() == 0.0 {
                     params.set(other, at[i]);
                 }
             }
         }
-        params
+        Ok(params)
     }
 
     /// The rule that integrates the model, in words.
@@ -95,7 +97,7 @@ impl Sweep {
     /// # Errors
     /// [`TexelError::Param`] where the model refuses the parameters.
     pub fn model(&self, at: &[f64]) -> Result<Box<dyn Brdf>, TexelError> {
-        Ok((self.info.build)(&self.params(at))?)
+        Ok((self.info.build)(&self.params(at)?)?)
     }
 
     /// The model at a point from above or from inside, where its relative index is 1 / eta.
@@ -103,9 +105,11 @@ impl Sweep {
     /// # Errors
     /// [`TexelError::Param`] where the model refuses the parameters.
     pub fn model_from(&self, at: &[f64], side: Side) -> Result<Box<dyn Brdf>, TexelError> {
-        let mut params = self.params(at);
-        if side == Side::Inside {
-            params.set("eta", 1.0 / params.number("eta"));
+        let mut params = self.params(at)?;
+        if side == Side::Inside
+            && let Some(eta) = params.optional("eta")
+        {
+            params.set("eta", 1.0 / eta);
         }
         Ok((self.info.build)(&params)?)
     }

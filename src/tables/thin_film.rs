@@ -88,8 +88,9 @@ struct Table {
 
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in [1, 100]")]
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
-    let number = |id: &str| spec.params.number(id);
-    if number("n3") + number("k3") <= 0.0 {
+    let [n2, n3, k3] = spec.params.numbers(["n2", "n3", "k3"])?;
+    let orders = spec.params.number("orders")?;
+    if n3 + k3 <= 0.0 {
         let why = "n3 and k3 are both 0: nothing can be".to_owned();
         return Err(crate::models::ParamError::Together { model: spec.kind.id, why }.into());
     }
@@ -97,8 +98,8 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     Ok(Box::new(Table {
         mu: spec.coordinate("mu")?,
         film: spec.coordinate("film")?,
-        substrate: Film { n2: number("n2"), n3: number("n3"), k3: number("k3"), d_nm: 0.0 },
-        orders: series.then(|| number("orders").round() as u32),
+        substrate: Film { n2, n3, k3, d_nm: 0.0 },
+        orders: series.then(|| orders.round() as u32),
         spectrum: spectrum::daylight(),
     }))
 }

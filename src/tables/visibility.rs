@@ -91,9 +91,9 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         mu_o: spec.coordinate("mu")?,
         mu_i: spec.coordinate("mu_i")?,
         axis: spec.axis("alpha"),
-        alpha: spec.params.number("alpha"),
-        distribution: spec.params.choice("distribution"),
-        correlated: spec.params.choice("masking") == "correlated",
+        alpha: spec.params.number("alpha")?,
+        distribution: spec.params.choice("distribution")?,
+        correlated: spec.params.choice("masking")? == "correlated",
         visibility: spec.roles().contains(&Role::Visibility),
     }))
 }

@@ -127,7 +127,7 @@ fn walks(case: &Case<'_>, texel: usize, seed: u64, watch: &mut Watch) {
     let point = case.table.grid.texel(texel);
     for (c, channel) in spec.layout.channels.iter().enumerate() {
         let Role::FibreAlbedo(scale) = channel.role else { continue };
-        let r = spec.axis("r").map_or_else(|| spec.params.number("r"), |i| point.values()[i]);
+        let Ok(r) = spec.number("r", point.values()) else { continue };
         let Some(mu) = spec.axis("mu").map(|i| point.values()[i]) else { continue };
         let found = walk::reflected(r * r, mu, WALKS, seed);
         // a part of n walks that is near 0 or 1 still has the spread of one walk

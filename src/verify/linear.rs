@@ -30,7 +30,7 @@ impl Linear {
             Role::Albedo(lobe, light, side) => one(lobe, side, light, 0.0, 1.0),
             Role::Complement(lobe, side) => one(lobe, side, Light::All, 1.0, -1.0),
             Role::Split(lobe, weight, factor) => {
-                let g = weight.functional().unwrap_or_else(|| curve(spec, at));
+                let g = weight.functional().or_else(|| curve(spec, at))?;
                 Linear { terms: vec![(g, factor)], ..one(lobe, Side::Above, Light::Reflected, 0.0, 1.0) }
             }
             Role::SplitRest(lobe) => {
@@ -49,10 +49,10 @@ pub(super) fn is_linear(role: Role) -> bool {
 }
 
 /// The curve of [`Weight::Curve`](crate::tables::role::Weight::Curve) that the parameters of a kind name, at a point.
-pub(super) fn curve(spec: &Spec, at: &[f64]) -> Functional {
-    let number = |id: &str| spec.axis(id).map_or_else(|| spec.params.number(id), |i| at[i]);
-    match spec.params.choice("curve") {
-        "dielectric" => Functional::Dielectric(number("eta")),
-        _ => Functional::Power(number("exponent")),
-    }
+pub(super) fn curve(spec: &Spec, at: &[f64]) -> Option<Functional> {
+    let number = |id: &str| spec.number(id, at).ok();
+    Some(match spec.params.choice("curve").ok()? {
+        "dielectric" => Functional::Dielectric(number("eta")?),
+        _ => Functional::Power(number("exponent")?),
+    })
 }

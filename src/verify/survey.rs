@@ -172,13 +172,13 @@ pub fn parameter_sets(info: &'static ModelInfo) -> Vec<(String, Params)> {
     let mut sets = vec![("defaults".to_owned(), defaults.clone())];
     for param in info.params {
         let Kind::Number { min, max, .. } = param.kind else { continue };
-        let before = defaults.number(param.id);
+        let Ok(before) = defaults.number(param.id) else { continue };
         for value in walk(min, max) {
             let mut params = defaults.clone();
             params.set(param.id, value);
             // parameters that follow this one by default go on following it
             for other in info.params.iter().filter(|p| follows(p, param.id)) {
-                if (params.number(other.id) - before).abs() == 0.0 {
+                if params.number(other.id).is_ok_and(|v| (v - before).abs() == 0.0) {
                     params.set(other.id, value);
                 }
             }

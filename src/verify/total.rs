@@ -78,7 +78,10 @@ fn skin(case: &Case<'_>) -> Outcome {
     let (Some(ndotl), Some(curvature)) = (spec.axis("ndotl"), spec.axis("curvature")) else {
         return Outcome::NotChecked("no axis of angle or curvature".to_owned());
     };
-    let sphere = spec.params.choice("over") == "sphere";
+    let sphere = match spec.params.choice("over") {
+        Ok(word) => word == "sphere",
+        Err(e) => return Outcome::NotChecked(e.to_string()),
+    };
     let expected = if sphere { 0.5 } else { 1.0 };
     let mut watch = Watch::default();
     for value in rows(case, curvature) {
@@ -128,7 +131,7 @@ fn sphere(case: &Case<'_>) -> Outcome {
     let values: Vec<Option<f64>> = axis.map_or(vec![None], |i| rows(case, i).into_iter().map(Some).collect());
     let mut watch = Watch::default();
     for g in values {
-        let phase = Phase::new(&spec.params, g);
+        let Ok(phase) = Phase::new(&spec.params, g) else { return nothing() };
         let relative = spec.roles().contains(&Role::Phase { relative: true });
         let peak = if relative { phase.largest() } else { 1.0 };
         let deflection = spec.axis("deflection").unwrap_or(0);

@@ -29,7 +29,7 @@ pub(crate) fn albedo(model: &dyn Brdf, view: impl Into<View>, tolerance: f64) ->
 
 /// E_avg as tables get it.
 pub(crate) fn average(name: &str, params: &str, tolerance: f64) -> f64 {
-    average_albedo::average(&*model(name, params), 1.0, tolerance).unwrap().value[0]
+    average_albedo::average(&*model(name, params), Some(1.0), tolerance).unwrap().value[0]
 }
 
 /// Records of a CSV file below `tests/values`, by column name.

@@ -4,7 +4,8 @@
 
 use brdfbake::grid::quantity::QUANTITIES;
 use brdfbake::models::MODELS;
-use brdfbake::recipe::{Fault, LoadError, MAX_BYTES, RecipeError, load, parse};
+use brdfbake::plan::Fault;
+use brdfbake::recipe::{LoadError, MAX_BYTES, RecipeError, load, parse};
 use brdfbake::tables::TABLES;
 use brdfbake::verify::LAWS;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,9 @@
 //! Plans made by a program, without a file.
 
+use brdfbake::plan::scene;
 use brdfbake::plan::{Output, Plan, TableRequest};
-use brdfbake::recipe::parse;
+use brdfbake::recipe::{parse, preset};
+use brdfbake::scene::{Asks, EXTENSIONS, GGX, Need, Needs};
 use brdfbake::tables::spec::Request;
 
 fn request(kind: &str) -> Request {
@@ -31,4 +33,41 @@ fn requests_are_checked_like_files() {
     assert!(text.contains("table[0].kind: unknown table kind `dgf`; did you mean `dfg`?"), "{text}");
     let none = Plan::from_requests("x", Vec::new()).unwrap_err();
     assert!(none.to_string().contains("allowed: 1 to 256"), "{none}");
+}
+
+#[test]
+fn a_scene_asks_for_what_the_preset_of_its_family_holds() {
+    let need = Need { table: GGX, roughness: [0.0, 1.0], asked_by: Vec::new() };
+    let needs = Needs { needs: vec![need], left_out: Vec::new() };
+    let plan = scene::plan(&needs).unwrap().unwrap();
+    assert_eq!(plan.name, scene::NAME);
+    let preset = preset(GGX).unwrap().plan().unwrap();
+    let tables = |plan: &Plan| plan.tables.iter().map(|t| t.canonical()).collect::<Vec<_>>();
+    assert_eq!(tables(&plan), tables(&preset));
+    assert!(scene::plan(&Needs::default()).unwrap().is_none());
+}
+
+#[test]
+fn every_family_that_a_scene_can_ask_for_is_baked() {
+    let lobes = EXTENSIONS.iter().filter_map(|e| match &e.asks {
+        Asks::Lobe(lobe) => Some(lobe.table),
+        _ => None,
+    });
+    for family in lobes.chain([GGX]) {
+        assert!(
+            scene::FAMILIES.iter().any(|f| f.id == family),
+            "write a line for `{family}` in FAMILIES of src/plan/scene.rs"
+        );
+    }
+    let none = Need { table: "nothing", roughness: [0.0, 1.0], asked_by: Vec::new() };
+    let error = scene::plan(&Needs { needs: vec![none], left_out: Vec::new() }).unwrap_err().to_string();
+    assert_eq!(error, "nothing bakes the nothing tables that the scene needs; there is ggx");
+}
+
+#[test]
+fn what_a_plan_asked_for_makes_it_again() {
+    let plan = preset("default").unwrap().plan().unwrap();
+    let again = Plan::from_requests(&plan.name, plan.requests()).unwrap();
+    assert_eq!(again.hash, plan.hash);
+    assert_eq!(again.files(), plan.files());
 }

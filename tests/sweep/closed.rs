@@ -167,7 +167,7 @@ pub(crate) fn truths(t: &Texel) -> Truths {
         "fresnel-conductor" => conductor_channels(t, &p),
         "fresnel-schlick" => vec![schlick_variant(t, &p)],
         "ndf" => ndf(t, &p),
-        "masking" => vec![masking(p.choice("distribution"), t.axis("mu"), t.axis("alpha")).0],
+        "masking" => vec![masking(p.choice("distribution").unwrap(), t.axis("mu"), t.axis("alpha")).0],
         "visibility" => vec![visibility(t, &p)],
         "kelemen-beckmann" => {
             let (u, m) = (t.axis("mu_m"), t.axis("m"));
@@ -189,7 +189,7 @@ pub(crate) fn truths(t: &Texel) -> Truths {
         "beer-lambert" => ["sigma_r", "sigma_g", "sigma_b"]
             .iter()
             .map(|id| {
-                let depth = p.number(id) * t.axis("path");
+                let depth = p.number(id).unwrap() * t.axis("path");
                 let value = if t.layout == "lost" { -(-depth).exp_m1() } else { (-depth).exp() };
                 (value, 1e-15 + 1e-15 * value * depth)
             })
@@ -271,9 +271,9 @@ pub(crate) fn conductor(c: f64, n: f64, k: f64) -> [f64; 2] {
 }
 
 fn conductor_channels(t: &Texel, p: &Params) -> Truths {
-    let metal = metals::find(p.choice("metal"));
+    let metal = metals::find(p.choice("metal").unwrap());
     let of = |lambda: f64| {
-        let (n, k) = metal.map_or((p.number("n"), p.number("k")), |m| m.index(lambda));
+        let (n, k) = metal.map_or((p.number("n").unwrap(), p.number("k").unwrap()), |m| m.index(lambda));
         conductor(t.axis("mu"), n, k)
     };
     let all = metals::RGB_NM.map(of);
@@ -286,11 +286,11 @@ fn conductor_channels(t: &Texel, p: &Params) -> Truths {
 }
 
 fn schlick_variant(t: &Texel, p: &Params) -> (f64, f64) {
-    let n = |id: &str| p.number(id);
+    let n = |id: &str| p.number(id).unwrap();
     let mu = t.axis("mu");
     let m = 1.0 - mu;
     let index = |n: f64, k: f64| ((n - 1.0) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k);
-    let value = match p.choice("variant") {
+    let value = match p.choice("variant").unwrap() {
         "generalised" => n("f0") + (n("f90") - n("f0")) * m.powf(n("exponent")),
         "f82-tint" => {
             let plain = |mu: f64| n("f0") + (1.0 - n("f0")) * (1.0 - mu).powi(5);
@@ -317,7 +317,7 @@ fn schlick_variant(t: &Texel, p: &Params) -> (f64, f64) {
 fn ndf(t: &Texel, p: &Params) -> Truths {
     let (mu, alpha) = (t.axis("mu_m"), t.axis("alpha"));
     let sin2 = (1.0 - mu) * (1.0 + mu);
-    let relative = if p.choice("distribution") == "ggx" {
+    let relative = if p.choice("distribution").unwrap() == "ggx" {
         // pi a^2 D
         let q = mu * mu + sin2 / (alpha * alpha);
         1.0 / (q * q)
@@ -371,10 +371,10 @@ fn masking(distribution: &str, mu: f64, alpha: f64) -> ((f64, f64), f64) {
 
 fn visibility(t: &Texel, p: &Params) -> (f64, f64) {
     let (mu_o, mu_i) = (t.axis("mu"), t.axis("mu_i"));
-    let d = p.choice("distribution");
-    let ((g_o, _), l_o) = masking(d, mu_o, p.number("alpha"));
-    let ((g_i, _), l_i) = masking(d, mu_i, p.number("alpha"));
-    let separable = p.choice("masking") == "separable" || d.starts_with("schlick");
+    let d = p.choice("distribution").unwrap();
+    let ((g_o, _), l_o) = masking(d, mu_o, p.number("alpha").unwrap());
+    let ((g_i, _), l_i) = masking(d, mu_i, p.number("alpha").unwrap());
+    let separable = p.choice("masking").unwrap() == "separable" || d.starts_with("schlick");
     let g2 = if separable { g_o * g_i } else { 1.0 / (1.0 + l_o + l_i) };
     if t.layout == "g2" { (g2, 1e-14) } else { exact_times(g2 / (4.0 * mu_o * mu_i), 10.0) }
 }
@@ -394,10 +394,10 @@ pub(crate) struct Phase {
 impl Phase {
     pub(crate) fn new(p: &Params) -> Phase {
         Phase {
-            id: p.choice("phase"),
-            g: p.number("g"),
-            alpha: p.number("draine_alpha"),
-            diameter: p.number("diameter"),
+            id: p.choice("phase").unwrap(),
+            g: p.number("g").unwrap(),
+            alpha: p.number("draine_alpha").unwrap(),
+            diameter: p.number("diameter").unwrap(),
         }
     }
 
@@ -436,11 +436,11 @@ pub(crate) enum Profile {
 
 impl Profile {
     pub(crate) fn new(p: &Params) -> Profile {
-        let rgb = |stem: &str| ["r", "g", "b"].map(|c| p.number(&format!("{stem}_{c}")));
-        match p.choice("profile") {
+        let rgb = |stem: &str| ["r", "g", "b"].map(|c| p.number(&format!("{stem}_{c}")).unwrap());
+        match p.choice("profile").unwrap() {
             "burley" => {
                 let (albedo, length) = (rgb("albedo"), rgb("length"));
-                let fit = match p.choice("fit") {
+                let fit = match p.choice("fit").unwrap() {
                     "searchlight" => burley_diffusion::Fit::Searchlight,
                     "diffuse" => burley_diffusion::Fit::Diffuse,
                     _ => burley_diffusion::Fit::DiffuseMeanFreePath,
@@ -452,7 +452,7 @@ impl Profile {
             }
             "dipole" => {
                 let (a, s) = (rgb("sigma_a"), rgb("sigma_s"));
-                let f = dipole::internal_reflectance(p.number("eta"));
+                let f = dipole::internal_reflectance(p.number("eta").unwrap());
                 Profile::Dipole([0, 1, 2].map(|c| {
                     let t = a[c] + s[c];
                     let z = [1.0 / t, (1.0 + 4.0 / 3.0 * (1.0 + f) / (1.0 - f)) / t];
@@ -462,7 +462,7 @@ impl Profile {
                 }))
             }
             "gaussians" => {
-                let rows = p.rows("gaussians");
+                let rows = p.rows("gaussians").unwrap();
                 let total = |c: usize| rows.iter().map(|r| r[1 + c]).sum::<f64>();
                 Profile::Gaussians(
                     rows.iter().map(|r| (r[0], [0, 1, 2].map(|c| r[1 + c] / total(c)))).collect(),
@@ -533,8 +533,8 @@ fn diffusion_profile(t: &Texel, p: &Params) -> Truths {
     let profile = Profile::new(p);
     let r = t.axis("radius");
     let total = |c: usize| match &profile {
-        Profile::Gaussians(_) if p.choice("profile") == "gaussians" => {
-            p.rows("gaussians").iter().map(|row| row[1 + c]).sum()
+        Profile::Gaussians(_) if p.choice("profile").unwrap() == "gaussians" => {
+            p.rows("gaussians").unwrap().iter().map(|row| row[1 + c]).sum()
         }
         Profile::Gaussians(_) => 1.0,
         Profile::Burley(_, albedo) => albedo[c],
@@ -542,7 +542,7 @@ fn diffusion_profile(t: &Texel, p: &Params) -> Truths {
     };
     (0..3)
         .map(|c| {
-            let factor = if p.choice("scale") == "albedo" { total(c) } else { 1.0 };
+            let factor = if p.choice("scale").unwrap() == "albedo" { total(c) } else { 1.0 };
             let (value, error) = match t.layout.as_str() {
                 "area" => (profile.ring(c, r) / (2.0 * PI * r), 0.0),
                 "inside" => (profile.part(c, 0.0, r), 1e-13),
@@ -563,7 +563,7 @@ fn merl(t: &Texel, p: &Params) -> Truths {
     let along = cos_d * cos_h;
     let across = sin_d * phi.cos() * sin_h;
     let (mu_o, mu_i) = (along + across, along - across);
-    let alpha = draw.params.number("alpha");
+    let alpha = draw.params.number("alpha").unwrap();
     let value = if mu_o > 0.0 && mu_i > 0.0 {
         crate::sweep::lobe::value(&draw, alpha, [h, cos_d], [mu_o, mu_i])
     } else {
@@ -576,5 +576,5 @@ fn merl(t: &Texel, p: &Params) -> Truths {
             + 1e-15 * slope.min(800.0)
             + 1e-15 / mu_o.min(mu_i).max(1e-12)
             + 1e-15 * h / (alpha * alpha));
-    ["red", "green", "blue"].map(|c| (p.number(c) * value, p.number(c) * error)).to_vec()
+    ["red", "green", "blue"].map(|c| (p.number(c).unwrap() * value, p.number(c).unwrap() * error)).to_vec()
 }

@@ -100,16 +100,17 @@ fn tail(values: &[f64]) -> f64 {
 pub(crate) fn compensated(draw: &Draw) -> (f64, f64) {
     let p = &draw.params;
     let mu = draw.mu;
-    let (alpha, gamma) = ([p.number("alpha"); 2], p.number("gamma"));
-    let single = lobe::microfacet(p.choice("base"), alpha, gamma, masking(p), (schlick_of(p), vec![]));
+    let (alpha, gamma) = ([p.number("alpha").unwrap(); 2], p.number("gamma").unwrap());
+    let single =
+        lobe::microfacet(p.choice("base").unwrap(), alpha, gamma, masking(p), (schlick_of(p), vec![]));
     let one = Fresnel::Schlick { f0: 1.0, f90: 1.0 };
-    let white = lobe::microfacet(p.choice("base"), alpha, gamma, masking(p), (one, vec![]));
+    let white = lobe::microfacet(p.choice("base").unwrap(), alpha, gamma, masking(p), (one, vec![]));
     let (e, e_error) = two_settings(|s, t| single.integrate(mu, 0.0, s, t));
     let (w, w_error) = two_settings(|s, t| white.integrate(mu, 0.0, s, t));
     let missing = (1.0 - w).max(0.0);
     match draw.model.id {
         "turquin" => {
-            let f0 = p.number("f0");
+            let f0 = p.number("f0").unwrap();
             let factor = 1.0 + f0 * (1.0 - w) / w;
             (e * factor, e_error * factor + e * f0 * w_error / (w * w))
         }
@@ -129,7 +130,7 @@ pub(crate) fn compensated(draw: &Draw) -> (f64, f64) {
             let colour = |missing: f64| {
                 let rest = 1.0 - f * missing;
                 let slides = if rest > 0.0 { f * (1.0 - missing) / rest } else { 1.0 };
-                if p.choice("colour") == "slides" { slides } else { f * slides }
+                if p.choice("colour").unwrap() == "slides" { slides } else { f * slides }
             };
             let slope = (colour(second + off) - colour(second)).abs();
             (e + colour(second) * missing, e_error + w_error * colour(second) + slope * missing)
@@ -167,8 +168,8 @@ fn charlie(roughness: f64, mu: f64) -> f64 {
 /// The material of glTF: its lobes, with the curve of the sheen.
 pub(crate) fn gltf(draw: &Draw) -> (f64, f64) {
     let p = &draw.params;
-    let number = |id: &str| p.number(id);
-    let square = |id: &str| p.number(id) * p.number(id);
+    let number = |id: &str| p.number(id).unwrap();
+    let square = |id: &str| p.number(id).unwrap() * p.number(id).unwrap();
     let mu = draw.mu;
     let (sheen, metallic, rho) = (number("sheen"), number("metallic"), number("base_color"));
     let rough = square("sheen_roughness");

@@ -77,7 +77,7 @@ fn gaussians(seed: u64, number: u64, row: usize) -> (String, Vec<Outcome>) {
             outcome(row, 1e-6, e.value[4 + c], e.error[4 + c], b, (a - b).abs() + 1e-12, e.evaluations)
         })
         .collect();
-    (format!("gaussian-fit {}", texel.resolved().choice("profile")), outcomes)
+    (format!("gaussian-fit {}", texel.resolved().choice("profile").unwrap()), outcomes)
 }
 
 /// Relative L3 error and half the total variation of the lobe of a matrix.

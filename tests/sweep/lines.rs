@@ -15,15 +15,20 @@ pub(crate) fn truths(t: &Texel) -> Truths {
     let p = t.resolved();
     match t.kind.as_str() {
         "thin-film" => {
-            let film =
-                Film { n2: p.number("n2"), n3: p.number("n3"), k3: p.number("k3"), d_nm: t.axis("film") };
+            let film = Film {
+                n2: p.number("n2").unwrap(),
+                n3: p.number("n3").unwrap(),
+                k3: p.number("k3").unwrap(),
+                d_nm: t.axis("film"),
+            };
             daylight(&[], &|lambda| thin_film::airy(&film, t.axis("mu"), lambda).unpolarised())
         }
         "fresnel-conductor" => {
-            let metal = metals::find(p.choice("metal"));
+            let metal = metals::find(p.choice("metal").unwrap());
             let kinks: Vec<f64> = metal.into_iter().flat_map(|m| m.rows).map(|row| row[0]).collect();
             daylight(&kinks, &|lambda| {
-                let (n, k) = metal.map_or((p.number("n"), p.number("k")), |m| m.index(lambda));
+                let (n, k) =
+                    metal.map_or((p.number("n").unwrap(), p.number("k").unwrap()), |m| m.index(lambda));
                 let [s, p] = conductor(t.axis("mu"), n, k);
                 0.5 * (s + p)
             })
@@ -83,9 +88,9 @@ fn blackbody(t: &Texel, p: &Params) -> Truths {
         })
     };
     let y = sum(temperature, &|xyz| xyz[1]);
-    let reference = sum(p.number("reference"), &|xyz| xyz[1]);
+    let reference = sum(p.number("reference").unwrap(), &|xyz| xyz[1]);
     let factor = match t.layout.as_str() {
-        "light" => y.0 * scale(temperature) / (reference.0 * scale(p.number("reference"))),
+        "light" => y.0 * scale(temperature) / (reference.0 * scale(p.number("reference").unwrap())),
         _ => 1.0,
     };
     (0..3)
@@ -102,7 +107,7 @@ fn skin(t: &Texel, p: &Params) -> Truths {
     let profile = Profile::new(p);
     let (mu, curvature) = (t.axis("ndotl"), t.axis("curvature"));
     let (theta, r) = (mu.acos(), 1.0 / curvature);
-    let sphere = p.choice("over") == "sphere";
+    let sphere = p.choice("over").unwrap() == "sphere";
     (0..3)
         .map(|c| {
             let mut inner: Vec<Edge> =
@@ -216,7 +221,7 @@ fn sampling(t: &Texel, p: &Params) -> Truths {
 /// The deflection beyond which the part u lies.
 fn phase(t: &Texel, p: &Params) -> (f64, f64) {
     let (f, u) = (Phase::new(p), t.axis("u"));
-    let width = (1.0 - p.number("g").abs()).clamp(1e-3, 1.0);
+    let width = (1.0 - p.number("g").unwrap().abs()).clamp(1e-3, 1.0);
     let density = |theta: f64| TAU * f.at(theta) * theta.sin();
     let part = |a: f64, b: f64| {
         let inner = [width, 3.0 * width, PI - width, PI - 3.0 * width, 0.1, 0.5, PI - 0.5].map(mark).to_vec();
@@ -254,7 +259,7 @@ fn importance(t: &Texel) -> Truths {
     let mu = draw.mu;
     let wo = DVec3::new(((1.0 - mu) * (1.0 + mu)).sqrt(), 0.0, mu);
     let theta_o = mu.acos();
-    let alpha = draw.params.number("alpha");
+    let alpha = draw.params.number("alpha").unwrap();
     let alpha = if alpha.is_nan() { 1.0 } else { alpha };
     let f = |theta: f64, phi: f64| {
         let (sin, cos) = theta.sin_cos();

@@ -22,7 +22,7 @@ const INFINITE: &str = "E is infinite at mu = 0";
 /// E of a draw.
 pub(crate) fn albedo(draw: &Draw) -> Truth {
     let (p, mu, phi) = (&draw.params, draw.mu, draw.phi);
-    let number = |id: &str| p.number(id);
+    let number = |id: &str| p.number(id).unwrap();
     let lobe = |lobe: Lobe<'_>| Ok(two_settings(|s, t| lobe.integrate(mu, phi, s, t)));
     let exact = |value: f64| Ok((value, 2e-16 * value.abs()));
     if draw.flat() {
@@ -81,7 +81,7 @@ pub(crate) fn albedo(draw: &Draw) -> Truth {
         }
         "lafortune" => {
             let mut total = (number("rho_d"), 0.0);
-            for row in p.rows("lobes") {
+            for row in p.rows("lobes").unwrap() {
                 let v = [row[0] * wo[0], row[1] * wo[1], row[2] * wo[2]];
                 let (e, error) = two_settings(|s, t| lobes::cosine(s, t, row[4], v, row[3], Over::Nothing));
                 total = (total.0 + e, total.1 + error);
@@ -120,7 +120,7 @@ pub(crate) fn albedo(draw: &Draw) -> Truth {
 /// The lobe of a model that is one half-vector lobe, and the relative error of what it is made of.
 pub(crate) fn half_vector(draw: &Draw) -> Option<(Lobe<'static>, f64)> {
     let p = &draw.params;
-    let number = |id: &str| p.number(id);
+    let number = |id: &str| p.number(id).unwrap();
     let lobe = match draw.model.id {
         "ashikhmin-shirley-specular" => {
             lobe::ashikhmin_shirley(number("rs"), number("nu"), number("nv"), draw.mu)
@@ -138,10 +138,10 @@ pub(crate) fn half_vector(draw: &Draw) -> Option<(Lobe<'static>, f64)> {
         "torrance-sparrow" => lobe::torrance_sparrow(number("alpha"), schlick_of(p), 1.0),
         "cook-torrance-1982" => lobe::torrance_sparrow(number("alpha"), schlick_of(p), 4.0),
         "blinn-phong-microfacet" => lobe::blinn_microfacet(number("n"), schlick_of(p)),
-        "ggx-schlick-masking" => lobe::schlick_masked(number("alpha"), p.choice("k"), schlick_of(p)),
+        "ggx-schlick-masking" => lobe::schlick_masked(number("alpha"), p.choice("k").unwrap(), schlick_of(p)),
         "kelemen" => lobe::kelemen(number("alpha"), schlick_of(p), 1.0),
         "kelemen-skin" => {
-            let unit = if p.choice("units") == "punctual" { PI } else { 1.0 };
+            let unit = if p.choice("units").unwrap() == "punctual" { PI } else { 1.0 };
             let factor = Fresnel::Schlick { f0: number("f0"), f90: 1.0 };
             lobe::kelemen(number("m"), factor, unit * number("rho_s"))
         }
@@ -173,17 +173,17 @@ pub(crate) fn transmitted_once(draw: &Draw, setting: &Setting, tolerance: f64) -
 }
 
 fn smooth(draw: &Draw) -> Option<f64> {
-    let eta = draw.params.number("eta");
+    let eta = draw.params.number("eta").unwrap();
     draw.flat().then(|| fresnel::dielectric_transmittance(draw.mu, eta).unpolarised())
 }
 
 fn interface(draw: &Draw) -> Option<Interface> {
     let p = &draw.params;
-    let alpha = p.number("alpha_x");
-    if alpha != p.number("alpha_y") {
+    let alpha = p.number("alpha_x").unwrap();
+    if alpha != p.number("alpha_y").unwrap() {
         return None;
     }
-    let across = match p.choice("masking") {
+    let across = match p.choice("masking").unwrap() {
         "separable" => Across::Separable,
         "beta" => Across::Beta,
         _ => Across::Sum,
@@ -192,7 +192,15 @@ fn interface(draw: &Draw) -> Option<Interface> {
     let ndf: Box<dyn Ndf> =
         if ggx { Box::new(Ggx::isotropic(alpha)) } else { Box::new(Beckmann::isotropic(alpha)) };
     let (density, end, _) = lobe::density(if ggx { "ggx" } else { "beckmann" }, 2.0);
-    Some(Interface { mu: draw.mu, alpha, eta: p.number("eta"), across, ndf, density, end: end.min(1e40) })
+    Some(Interface {
+        mu: draw.mu,
+        alpha,
+        eta: p.number("eta").unwrap(),
+        across,
+        ndf,
+        density,
+        end: end.min(1e40),
+    })
 }
 
 /// A constant and a scaled lobe.
@@ -206,11 +214,11 @@ fn phong(wo: [f64; 3], n: f64, constant: f64, scale: f64, over: Over) -> Truth {
 }
 
 pub(crate) fn schlick_of(p: &Params) -> Fresnel {
-    Fresnel::Schlick { f0: p.number("f0"), f90: p.number("f90") }
+    Fresnel::Schlick { f0: p.number("f0").unwrap(), f90: p.number("f90").unwrap() }
 }
 
 pub(crate) fn masking(p: &Params) -> Masking {
-    if p.choice("masking") == "separable" { Masking::Separable } else { Masking::Correlated }
+    if p.choice("masking").unwrap() == "separable" { Masking::Separable } else { Masking::Correlated }
 }
 
 fn smith<'a>(draw: &Draw) -> Lobe<'a> {
@@ -219,8 +227,8 @@ fn smith<'a>(draw: &Draw) -> Lobe<'a> {
     let base = ["ggx", "beckmann"].into_iter().find(|b| id.starts_with(b)).unwrap_or("student-t");
     lobe::microfacet(
         base,
-        [p.number("alpha_x"), p.number("alpha_y")],
-        p.number("gamma"),
+        [p.number("alpha_x").unwrap(), p.number("alpha_y").unwrap()],
+        p.number("gamma").unwrap(),
         masking(p),
         lobe::fresnel(p),
     )
@@ -243,7 +251,7 @@ fn diffuse(draw: &Draw) -> (f64, f64) {
 /// GTR: the masking is a curve of its own rule.
 fn gtr(draw: &Draw) -> (Lobe<'static>, f64) {
     let p = &draw.params;
-    let (alpha, gamma) = (p.number("alpha"), p.number("gamma"));
+    let (alpha, gamma) = (p.number("alpha").unwrap(), p.number("gamma").unwrap());
     let exact = move |mu: f64| lobe::gtr_mu_lambda(alpha, gamma, mu, &quad::SECOND);
     let curve = Curve::new(split(&[-34.0, 34.0], 2.0), 24, &exact);
     let error = curve.error();
@@ -260,7 +268,7 @@ impl Draw {
 
 /// Schlick's average.
 pub(crate) fn f_avg(p: &Params) -> f64 {
-    schlick::schlick_average(p.number("f0"), p.number("f90"))
+    schlick::schlick_average(p.number("f0").unwrap(), p.number("f90").unwrap())
 }
 
 /// E of a lobe by one setting, for curves.

@@ -216,9 +216,12 @@ pub const K: Param =
     Param::number("k", "k", "extinction coefficient; 0 is a dielectric", [0.0, 1e3], Preset::Value(3.9));
 
 /// The masking that the parameters name.
-#[must_use]
-pub fn masking(params: &Params) -> Masking {
-    if params.choice("masking") == "separable" { Masking::Separable } else { Masking::Correlated }
+///
+/// # Errors
+/// [`ParamError::Undeclared`] where none is declared.
+pub fn masking(params: &Params) -> Result<Masking, ParamError> {
+    let separable = params.choice("masking")? == "separable";
+    Ok(if separable { Masking::Separable } else { Masking::Correlated })
 }
 
 /// Both widths: each zero or neither (a groove of zero width has no density along one axis only).
@@ -226,7 +229,7 @@ pub fn masking(params: &Params) -> Masking {
 /// # Errors
 /// [`ParamError::Together`] if just one is 0.
 pub fn alphas(model: &'static str, params: &Params) -> Result<[f64; 2], ParamError> {
-    let (x, y) = (params.number("alpha_x"), params.number("alpha_y"));
+    let (x, y) = (params.number("alpha_x")?, params.number("alpha_y")?);
     if (x > 0.0) == (y > 0.0) {
         Ok([x, y])
     } else {
@@ -253,7 +256,7 @@ pub fn build<D: Distribution + 'static>(
     Ok(Box::new(Microfacet {
         distribution: distribution(x, y),
         flat: x <= 0.0,
-        masking: masking(params),
+        masking: masking(params)?,
         fresnel,
     }))
 }

@@ -54,6 +54,16 @@ pub enum ParamError {
         /// The other one.
         other: String,
     },
+    /// A parameter that was asked for by a name or a type that is not declared: a fault of the program.
+    #[error("{model}: it declares no `{key}` that is {what}")]
+    Undeclared {
+        /// Model id.
+        model: &'static str,
+        /// The name that was asked for.
+        key: String,
+        /// What it was taken for.
+        what: &'static str,
+    },
     /// Parameters that are each in range but not together.
     #[error("{model}: {why}")]
     Together {
@@ -71,7 +81,7 @@ impl ParamError {
         match self {
             ParamError::Unknown { key, .. } | ParamError::Twice { other: key, .. } => Some(key),
             ParamError::Range { key, .. } | ParamError::Kind { key, .. } => Some(key),
-            ParamError::Together { .. } => None,
+            ParamError::Undeclared { .. } | ParamError::Together { .. } => None,
         }
     }
 }

@@ -31,7 +31,8 @@ impl Colour {
         let mut breaks: Vec<f64> = WYMAN_BREAKS.to_vec();
         if !matches!(role, Role::BlackBody(..)) {
             breaks.extend((36..=83).map(|i| 10.0 * f64::from(i)));
-            let rows = metals::find(spec.params.choice("metal")).into_iter().flat_map(|m| m.rows);
+            let rows =
+                spec.params.choice("metal").ok().and_then(metals::find).into_iter().flat_map(|m| m.rows);
             breaks.extend(rows.map(|row| row[0]).filter(|l| (360.0..830.0).contains(l)));
         }
         breaks.sort_by(f64::total_cmp);
@@ -58,7 +59,7 @@ impl Colour {
     /// Roles of this file.
     pub(super) fn truth(&self, role: Role, asked: &Asked<'_>, c: usize) -> Option<Truth> {
         let at = |id: &str| asked.spec.axis(id).map(|i| asked.at[i]);
-        let number = |id: &str| at(id).unwrap_or_else(|| asked.spec.params.number(id));
+        let number = |id: &str| asked.spec.number(id, asked.at).ok();
         let target = asked.targets[c];
         match role {
             Role::MetalColour(band) => {
@@ -72,15 +73,15 @@ impl Colour {
             }
             Role::FilmColour(band) => {
                 let i = band.index();
-                let (mu, film) = (at("mu")?, Film::of(&number, at("film")?));
+                let (mu, film) = (at("mu")?, Film::of(&number, at("film")?)?);
                 let sum = self.over_spectrum(0.5 * target * self.white[i], &mut |lambda| {
                     metals::d65(lambda) * film.airy(mu, lambda)
                 });
                 Some(self.under_white(&sum, i))
             }
             Role::FilmSeries(band) => {
-                let film = Film::of(&number, at("film")?);
-                Some(film.series(at("mu")?, number("orders").round(), band.index()))
+                let film = Film::of(&number, at("film")?)?;
+                Some(film.series(at("mu")?, number("orders")?.round(), band.index()))
             }
             Role::BlackBody(glow, band) => self.glow(glow, band.index(), &number, at("temperature")?, target),
             _ => None,
@@ -95,7 +96,7 @@ impl Colour {
         &self,
         glow: Glow,
         i: usize,
-        number: &dyn Fn(&str) -> f64,
+        number: &dyn Fn(&str) -> Option<f64>,
         temperature: f64,
         target: f64,
     ) -> Option<Truth> {
@@ -108,7 +109,7 @@ impl Colour {
         let rough = spectrum(temperature, f64::INFINITY).value[3];
         let factor = match glow {
             Glow::Light => {
-                let reference = number("reference");
+                let reference = number("reference")?;
                 let there = spectrum(reference, 1e-10);
                 rough / there.value[3] * planck(560.0, temperature) / planck(560.0, reference)
             }
@@ -119,7 +120,7 @@ impl Colour {
         let hue = sum.value[i] / y;
         let error = (sum.error[i] + hue.abs() * sum.error[3]) / y;
         let (scale, scale_error) = if glow == Glow::Light {
-            let reference = number("reference");
+            let reference = number("reference")?;
             let there = spectrum(reference, 1e-12);
             let scale = y / there.value[3] * planck(560.0, temperature) / planck(560.0, reference);
             (scale, scale * (sum.error[3] / y + there.error[3] / there.value[3] + 1e-13))
@@ -149,8 +150,9 @@ struct Film {
 }
 
 impl Film {
-    fn of(number: &dyn Fn(&str) -> f64, thickness_nm: f64) -> Film {
-        Film { n2: number("n2"), below: Complex::new(number("n3"), number("k3")), thickness_nm }
+    fn of(number: &dyn Fn(&str) -> Option<f64>, thickness_nm: f64) -> Option<Film> {
+        let below = Complex::new(number("n3")?, number("k3")?);
+        Some(Film { n2: number("n2")?, below, thickness_nm })
     }
 
     /// `N cos theta` of the three media, and their squared indices.

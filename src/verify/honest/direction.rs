@@ -93,7 +93,7 @@ impl Directions {
         let target = asked.targets.iter().copied().fold(f64::INFINITY, f64::min);
         let mut of = |(c, role): (usize, &Role)| match *role {
             Role::Value(lobe, band) => {
-                let factor = asked.spec.params.number(["red", "green", "blue"][band.index()]);
+                let factor = asked.spec.params.number(["red", "green", "blue"][band.index()]).ok()?;
                 let truth = self.value(lobe, asked)?;
                 Some(Truth { value: factor * truth.value, error: factor * truth.error })
             }

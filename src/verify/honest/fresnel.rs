@@ -94,10 +94,10 @@ pub(super) fn of_dielectric(spec: &Spec, p: Polarisation, side: Side, at: &[f64]
 /// A Fresnel factor of a metal.
 pub(super) fn of_metal(spec: &Spec, p: Polarisation, lambda_nm: f64, at: &[f64]) -> Option<Truth> {
     let mu = at[spec.axis("mu")?];
-    let number = |id: &str| spec.axis(id).map_or_else(|| spec.params.number(id), |i| at[i]);
-    let (n, k) = match metals::find(spec.params.choice("metal")) {
+    let number = |id: &str| spec.number(id, at).ok();
+    let (n, k) = match metals::find(spec.params.choice("metal").ok()?) {
         Some(metal) => metal.index(lambda_nm),
-        None => (number("n"), number("k")),
+        None => (number("n")?, number("k")?),
     };
     Some(conductor(mu, n, k).of(p))
 }
@@ -105,7 +105,7 @@ pub(super) fn of_metal(spec: &Spec, p: Polarisation, lambda_nm: f64, at: &[f64])
 /// A factor in closed form.
 pub(super) fn of_form(spec: &Spec, clamped: bool, at: &[f64]) -> Option<Truth> {
     let mu = at[spec.axis("mu")?];
-    let number = |id: &str| spec.axis(id).map_or_else(|| spec.params.number(id), |i| at[i]);
+    let number = |id: &str| spec.number(id, at).ok();
     let fall = 1.0 - mu;
     let lerp = |f0: f64, f90: f64, w: f64| f0 * (1.0 - w) + f90 * w;
     let normal = |n: f64, k: f64| {
@@ -113,21 +113,21 @@ pub(super) fn of_form(spec: &Spec, clamped: bool, at: &[f64]) -> Option<Truth> {
         if r.is_nan() { 1.0 } else { r }
     };
     let mut size = 1.0;
-    let f = match spec.params.choice("variant") {
-        "generalised" => lerp(number("f0"), number("f90"), libm::pow(fall, number("exponent"))),
+    let f = match spec.params.choice("variant").ok()? {
+        "generalised" => lerp(number("f0")?, number("f90")?, libm::pow(fall, number("exponent")?)),
         "f82-tint" => {
-            let at_82 = lerp(number("f0"), 1.0, libm::pow(6.0 / 7.0, 5.0));
-            let b = at_82 * (1.0 - number("tint")) * 7.0 * libm::pow(7.0 / 6.0, 6.0);
+            let at_82 = lerp(number("f0")?, 1.0, libm::pow(6.0 / 7.0, 5.0));
+            let b = at_82 * (1.0 - number("tint")?) * 7.0 * libm::pow(7.0 / 6.0, 6.0);
             size += b;
-            lerp(number("f0"), 1.0, libm::pow(fall, 5.0)) - b * mu * libm::pow(fall, 6.0)
+            lerp(number("f0")?, 1.0, libm::pow(fall, 5.0)) - b * mu * libm::pow(fall, 6.0)
         }
         "lazanyi" => {
-            let (a, q) = (number("a"), number("q"));
+            let (a, q) = (number("a")?, number("q")?);
             size += a;
-            lerp(normal(number("n"), number("k")), 1.0, libm::pow(fall, 5.0)) - a * mu * libm::pow(fall, q)
+            lerp(normal(number("n")?, number("k")?), 1.0, libm::pow(fall, 5.0)) - a * mu * libm::pow(fall, q)
         }
-        "dielectric" => return Some(of_schlick_dielectric(mu, number("eta"))),
-        _ => lerp(number("f0"), number("f90"), libm::pow(fall, 5.0)),
+        "dielectric" => return Some(of_schlick_dielectric(mu, number("eta")?)),
+        _ => lerp(number("f0")?, number("f90")?, libm::pow(fall, 5.0)),
     };
     let value = if clamped { f.clamp(0.0, 1.0) } else { f };
     Some(Truth { value, error: 8.0 * f64::EPSILON * size })

@@ -28,16 +28,16 @@ enum Phase {
 }
 
 impl Phase {
-    fn of(asked: &Asked<'_>) -> Phase {
-        let number = |id: &str| asked.spec.params.number(id);
-        let g = asked.spec.axis("g").map_or_else(|| number("g"), |i| asked.at[i]);
-        match asked.spec.params.choice("phase") {
+    fn of(asked: &Asked<'_>) -> Option<Phase> {
+        let number = |id: &str| asked.spec.params.number(id).ok();
+        let g = asked.spec.number("g", asked.at).ok()?;
+        Some(match asked.spec.params.choice("phase").ok()? {
             "isotropic" => Phase::Isotropic,
             "rayleigh" => Phase::Rayleigh,
-            "draine" => Phase::Draine { g, alpha: number("draine_alpha") },
+            "draine" => Phase::Draine { g, alpha: number("draine_alpha")? },
             "fog" => {
                 // Jendersie and d'Eon 2023, Eq. 7 to 10
-                let d = number("diameter").clamp(5.0, 50.0);
+                let d = number("diameter")?.clamp(5.0, 50.0);
                 Phase::Mixture {
                     g: libm::exp(-0.0990567 / (d - 1.67154)),
                     other: [
@@ -48,7 +48,7 @@ impl Phase {
                 }
             }
             _ => Phase::Draine { g, alpha: 0.0 },
-        }
+        })
     }
 
     /// The density, 1/sr, by the squares of the sine and the cosine of half the deflection.
@@ -99,16 +99,16 @@ pub(super) fn truth(role: Role, asked: &Asked<'_>, c: usize) -> Option<Truth> {
     let at = |id: &str| asked.spec.axis(id).map(|i| asked.at[i]);
     match role {
         Role::Phase { relative } => {
-            let phase = Phase::of(asked);
+            let phase = Phase::of(asked)?;
             let (sin, cos) = libm::sincos(0.5 * at("deflection")?);
             let peak = if relative { phase.at(0.0, 1.0).max(phase.at(1.0, 0.0)) } else { 1.0 };
             let value = phase.at(sin * sin, cos * cos) / peak;
             Some(Truth { value, error: ROUNDING * value })
         }
-        Role::PhaseQuantile { angle } => quantile(Phase::of(asked), at("u")?, asked.baked[c], angle),
+        Role::PhaseQuantile { angle } => quantile(Phase::of(asked)?, at("u")?, asked.baked[c], angle),
         Role::Passed(band) | Role::Lost(band) => {
             let id = ["sigma_r", "sigma_g", "sigma_b"][band.index()];
-            let sigma = asked.spec.axis(id).map_or_else(|| asked.spec.params.number(id), |i| asked.at[i]);
+            let sigma = asked.spec.number(id, asked.at).ok()?;
             let depth = sigma * at("path")?;
             // e^-x = (e^(-x / 2))^2, and 1 - e^-x = 2 sinh(x / 2) e^(-x / 2)
             let half = libm::exp(-0.5 * depth);

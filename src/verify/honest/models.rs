@@ -116,19 +116,19 @@ impl Models {
                 both
             }
             Role::Split(lobe, weight, _) => {
-                let g = weight.functional().unwrap_or_else(|| linear::curve(asked.spec, asked.at));
-                vec![reflected(lobe, g)]
+                let g = weight.functional().or_else(|| linear::curve(asked.spec, asked.at));
+                g.map(|g| reflected(lobe, g)).into_iter().collect()
             }
             Role::SplitRest(lobe) => {
                 vec![reflected(lobe, Functional::Schlick), reflected(lobe, Functional::One)]
             }
             Role::SplitMean(lobe) => {
-                let g = linear::curve(asked.spec, asked.at);
-                vec![reflected(lobe, g), reflected(lobe, Functional::One)]
+                let curve = linear::curve(asked.spec, asked.at);
+                curve.into_iter().chain([Functional::One]).map(|g| reflected(lobe, g)).collect()
             }
             Role::SampledMean(lobe) => {
                 let g = linear::curve(asked.spec, asked.at);
-                vec![base(lobe, Side::Above, Flux::Drawn, g, false)]
+                g.map(|g| base(lobe, Side::Above, Flux::Drawn, g, false)).into_iter().collect()
             }
             _ => Vec::new(),
         }
@@ -136,7 +136,8 @@ impl Models {
 
     /// Relative index that a lobe is seen with; NaN where it has none.
     fn eta(&self, base: &Base, asked: &Asked<'_>) -> f64 {
-        let eta = self.lobes.sweep(base.lobe).map_or(f64::NAN, |s| s.params(asked.at).number("eta"));
+        let sweep = self.lobes.sweep(base.lobe);
+        let eta = sweep.and_then(|s| s.params(asked.at).ok()?.number("eta").ok()).unwrap_or(f64::NAN);
         if base.side == Side::Inside { 1.0 / eta } else { eta }
     }
 
@@ -230,7 +231,7 @@ fn combine(role: Role, asked: &Asked<'_>, known: &Known) -> Option<Truth> {
             Some(kept(times(all(lobe)?, 1.0 / divisor, 0.0), channel.range[0], channel.range[1]))
         }
         Role::Scaling(lobe) => {
-            let sheen = asked.spec.params.number("sheen");
+            let sheen = asked.spec.params.number("sheen").ok()?;
             Some(kept(times(all(lobe)?, -sheen, 1.0), 0.0, f64::INFINITY))
         }
         Role::Gain(lobe) => {
@@ -253,7 +254,7 @@ fn combine(role: Role, asked: &Asked<'_>, known: &Known) -> Option<Truth> {
             asked,
         ),
         Role::Split(lobe, weight, factor) => {
-            let g = weight.functional().unwrap_or_else(|| linear::curve(asked.spec, asked.at));
+            let g = weight.functional().or_else(|| linear::curve(asked.spec, asked.at))?;
             Some(times(split(lobe, g)?, factor, 0.0))
         }
         Role::SplitRest(lobe) => {
@@ -266,7 +267,7 @@ fn combine(role: Role, asked: &Asked<'_>, known: &Known) -> Option<Truth> {
             })
         }
         Role::SplitMean(lobe) => {
-            let g = linear::curve(asked.spec, asked.at);
+            let g = linear::curve(asked.spec, asked.at)?;
             let (part, whole) = (split(lobe, g)?, split(lobe, Functional::One)?);
             if whole.value <= 0.0 {
                 return Some(Truth { value: 0.0, error: 0.0 });
@@ -275,7 +276,7 @@ fn combine(role: Role, asked: &Asked<'_>, known: &Known) -> Option<Truth> {
             Some(Truth { value, error: (part.error + value * whole.error) / whole.value + ROUNDING })
         }
         Role::SampledMean(lobe) => {
-            get(lobe, Side::Above, Flux::Drawn, false, linear::curve(asked.spec, asked.at)).flatten()
+            get(lobe, Side::Above, Flux::Drawn, false, linear::curve(asked.spec, asked.at)?).flatten()
         }
         Role::Unused => Some(Truth { value: 0.0, error: 0.0 }),
         _ => None,
@@ -291,10 +292,10 @@ fn floor(role: Role, asked: &Asked<'_>) -> f64 {
 
 /// The reflected share of the added light, `1 - x (1 - F_avg)`, from what both sides miss.
 fn shares(side: Side, above: Truth, inside: Truth, asked: &Asked<'_>) -> Option<Truth> {
-    let eta = asked.spec.axis("eta").map_or_else(
-        || asked.spec.model.as_ref().map_or(f64::NAN, |(_, p)| p.number("eta")),
-        |i| asked.at[i],
-    );
+    let eta = match asked.spec.axis("eta") {
+        Some(i) => asked.at[i],
+        None => asked.spec.model.as_ref()?.1.number("eta").ok()?,
+    };
     let [a, b] = [above, inside].map(|t| (1.0 - t.value).max(0.0));
     let sum = a + b;
     let x = if sum > 0.0 { b / sum } else { 0.5 };

@@ -23,7 +23,7 @@ enum Normals {
 impl Normals {
     fn of(asked: &Asked<'_>, alpha: f64) -> Option<Normals> {
         let roughness = alpha.sqrt();
-        Some(match asked.spec.params.choice("distribution") {
+        Some(match asked.spec.params.choice("distribution").ok()? {
             "ggx" => Normals::Ggx,
             "beckmann" => Normals::Beckmann,
             "schlick-ibl" => Normals::Rational(0.5 * alpha),
@@ -88,7 +88,7 @@ impl Normals {
 pub(super) fn truth(role: Role, asked: &Asked<'_>) -> Option<Truth> {
     let spec = asked.spec;
     let at = |id: &str| spec.axis(id).map(|i| asked.at[i]);
-    let alpha = || at("alpha").or_else(|| Some(spec.params.number("alpha")).filter(|a| a.is_finite()));
+    let alpha = || at("alpha").or_else(|| spec.params.number("alpha").ok());
     match role {
         Role::Distribution { relative } => {
             let (mu, alpha) = (at("mu_m")?, alpha()?);
@@ -127,7 +127,7 @@ fn pair(role: Role, asked: &Asked<'_>, [o, i]: [f64; 2], alpha: f64) -> Option<T
     let ([over_o, e_o], [over_i, e_i]) =
         (<[f64; 2]>::from(normals.over_masking(o, alpha)), <[f64; 2]>::from(normals.over_masking(i, alpha)));
     let rational = matches!(normals, Normals::Rational(_));
-    let correlated = asked.spec.params.choice("masking") == "correlated" && !rational;
+    let correlated = asked.spec.params.choice("masking").is_ok_and(|word| word == "correlated") && !rational;
     // 1 / (1 + L_o + L_i) over mu_o mu_i, or the product of both G1 over them: the denominators
     let (below, error) = if correlated {
         let (hidden_o, hidden_i) = (over_o - o, over_i - i);

@@ -40,7 +40,7 @@ impl Profiles {
         };
         spec.roles().iter().find(|r| about_profiles(r))?;
         let profile = Profile::new(spec).ok()?;
-        let albedo = spec.params.choice("scale") == "albedo";
+        let albedo = spec.params.choice("scale").is_ok_and(|word| word == "albedo");
         let mut profiles = Profiles { profile, whole: [1.0; 3], albedo };
         profiles.whole = [Band::Red, Band::Green, Band::Blue].map(|band| {
             let ring = &mut |r: f64| 2.0 * PI * profiles.raw_times_radius(r, band);
@@ -215,7 +215,7 @@ impl Profiles {
             return Some(Truth { value: mu.max(0.0), error: 0.0 });
         }
         let (r, theta) = (1.0 / curvature, libm::acos(mu));
-        let sphere = asked.spec.params.choice("over") == "sphere";
+        let sphere = asked.spec.params.choice("over").ok()? == "sphere";
         let lit = |x: f64| if sphere { lit_circle(theta, x, target) } else { lit_ring(theta, x) };
         // the sine of half the angle as the variable: the chord over 2 r
         let mut breaks = vec![0.0, 1.0];
