@@ -8,6 +8,7 @@ mod layering;
 mod layout;
 mod listed;
 mod mutants;
+mod programs;
 mod readme;
 mod recipes;
 mod registry;

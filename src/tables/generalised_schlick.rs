@@ -128,21 +128,21 @@ impl Baker for Schlick {
         let (model, view, curve) = (self.sweep.model(at)?, self.sweep.view(at), self.curve(at));
         let mut all = Estimate { value: [0.0; MAX_CHANNELS], error: [0.0; MAX_CHANNELS], evaluations: 0 };
         let weighed = self.parts.iter().any(|p| *p != Part::Visible);
-        let part = if weighed {
-            integrate(&*model, view, &[curve, Functional::One], 0.25 * tolerance)?
-        } else {
-            all
-        };
+        let both = [curve, Functional::One];
+        let mut part = if weighed { integrate(&*model, view, &both, 0.25 * tolerance)? } else { all };
+        if self.parts.contains(&Part::Mean) && mean(&part).1 > tolerance && part.value[1] > 0.0 {
+            // the quotient magnifies both errors: each to its share
+            let again = integrate(&*model, view, &both, 0.45 * tolerance * part.value[1])?;
+            part = Estimate { evaluations: part.evaluations.saturating_add(again.evaluations), ..again };
+        }
         let visible =
             if self.parts.contains(&Part::Visible) { visible(&*model, view, curve, tolerance)? } else { all };
         all.evaluations = part.evaluations.saturating_add(visible.evaluations);
-        let [s, e] = [part.value[0], part.value[1]];
         for (c, wanted) in self.parts.iter().enumerate() {
             (all.value[c], all.error[c]) = match wanted {
-                Part::Weighed => (s, part.error[0]),
+                Part::Weighed => (part.value[0], part.error[0]),
                 Part::Visible => (visible.value[0], visible.error[0]),
-                Part::Mean if e > 0.0 => (s / e, (part.error[0] + s / e * part.error[1]) / e),
-                Part::Mean => (0.0, 0.0),
+                Part::Mean => mean(&part),
             };
         }
         Ok(all)
@@ -151,6 +151,12 @@ impl Baker for Schlick {
     fn rule(&self) -> String {
         self.sweep.rule()
     }
+}
+
+/// s, the part that the curve weighs over the whole, with its error; 0 where nothing is reflected.
+fn mean(part: &Estimate) -> (f64, f64) {
+    let [s, e] = [part.value[0], part.value[1]];
+    if e > 0.0 { (s / e, (part.error[0] + s / e * part.error[1]) / e) } else { (0.0, 0.0) }
 }
 
 /// The mean of the curve over the directions that the model's sampler draws.

@@ -47,6 +47,12 @@ pub(super) const BUDGET: u32 = 300_000;
 /// A view in the horizon stands for the limit of grazing views.
 const JUST_ABOVE: f64 = 1e-150;
 
+/// Part of the width of a lobe below which a view cosine stands for 0: what turns so fast holds no more than that part of the light.
+const IN_THE_HORIZON: f64 = 1e-13;
+
+/// Least scale of the azimuth at such a view.
+const LEAST_TURN: f64 = 1e-3;
+
 /// Scramblings, and points in each, where the model is drawn from.
 const DRAWS: [u32; 2] = [16, 512];
 
@@ -120,8 +126,8 @@ impl Wanted<'_> {
             breaks.extend((0..quarters).map(|q| f64::from(q) + 0.6));
             breaks.sort_by(f64::total_cmp);
         }
-        // the horizon turns within mu of a quarter and three quarters of a turn
-        let steep = Spread::new(wo.z);
+        // the horizon turns within mu of a quarter and three quarters of a turn; of a view that is as good as in it, nowhere
+        let steep = Spread::new(if wo.z < IN_THE_HORIZON * narrow { narrow.max(LEAST_TURN) } else { wo.z });
         // total reflection leaves the plane of the view at some azimuth
         let critical = ((1.0 - self.eta) * (1.0 + self.eta)).max(0.0);
         let turn = (critical - wo.z * wo.z).max(0.0).sqrt() / self.view.sine();
