@@ -2,6 +2,10 @@
 //! models, limits, samplers against quadrature.
 #![allow(clippy::unwrap_used, reason = "test")]
 
+use crate::tolerance::{
+    DIGIT_LOST, INTEGRAL_7, INTEGRAL_8, INTEGRAL_10, INTEGRAL_11, INTEGRAL_12, LIMIT_FAR, MANY_ROUNDINGS,
+    near,
+};
 use brdfbake::integrate::Estimate;
 use brdfbake::math::frame;
 use brdfbake::models::{self, Brdf, Params};
@@ -55,7 +59,7 @@ fn compare(table: &str, name: &str, functionals: &[Functional], scale: f64, want
         let off = (scale * e.value[0] - row.value).abs();
         let digits = libm::pow(10.0, f64::from(1 - row.digits)) * row.value;
         assert!(
-            off <= scale * e.error[0] + digits + 1e-13,
+            off <= scale * e.error[0] + digits + DIGIT_LOST,
             "{what}: off by {off:e}, estimate {:e}, value {:.17}",
             e.error[0],
             row.value
@@ -92,7 +96,7 @@ fn same(a: &dyn Brdf, b: &dyn Brdf, factor: f64, bound: f64, what: &str) {
             let wo = frame::spherical(0.19 * f64::from(i), 0.3);
             let wi = frame::spherical(0.21 * f64::from(j), 0.3 + 0.9 * f64::from(i + j));
             let (x, y) = (a.eval(wo, wi), factor * b.eval(wo, wi));
-            assert!((x - y).abs() <= bound * y.abs().max(1e-10), "{what}: {i} {j}: {x:e} {y:e}");
+            near!(x, y, bound * y.abs().max(INTEGRAL_10), "{what}: {i} {j}: {x:e} {y:e}");
         }
     }
 }
@@ -101,25 +105,37 @@ fn same(a: &dyn Brdf, b: &dyn Brdf, factor: f64, bound: f64, what: &str) {
 fn models_that_are_the_same_have_the_same_values() {
     for alpha in [0.05, 0.3, 1.0] {
         let p = json!({ "alpha": alpha, "f0": 0.1 });
-        same(&*build("torrance-sparrow", &p), &*build("cook-torrance-1982", &p), 0.25, 1e-14, "a quarter");
+        same(
+            &*build("torrance-sparrow", &p),
+            &*build("cook-torrance-1982", &p),
+            0.25,
+            MANY_ROUNDINGS,
+            "a quarter",
+        );
         let t = json!({ "alpha": alpha, "f0": 0.1, "gamma": 2 });
-        same(&*build("student-t", &t), &*build("ggx", &p), 1.0, 1e-11, "gamma = 2");
-        same(&*build("gtr", &t), &*build("ggx", &p), 1.0, 1e-12, "gamma = 2");
+        same(&*build("student-t", &t), &*build("ggx", &p), 1.0, INTEGRAL_11, "gamma = 2");
+        same(&*build("gtr", &t), &*build("ggx", &p), 1.0, INTEGRAL_12, "gamma = 2");
         let t = json!({ "alpha": alpha, "f0": 0.1, "gamma": 1e8 });
-        same(&*build("student-t", &t), &*build("beckmann", &p), 1.0, 1e-4, "gamma = 1e8");
+        same(&*build("student-t", &t), &*build("beckmann", &p), 1.0, LIMIT_FAR, "gamma = 1e8");
         // k = 1/2 is Smith's masking at alpha = 1, and nowhere else
     }
     let one = json!({ "alpha": 1 });
-    same(&*build("ggx-schlick-masking", &one), &*build("ggx_smith_separable", &one), 1.0, 1e-14, "k = 1/2");
+    same(
+        &*build("ggx-schlick-masking", &one),
+        &*build("ggx_smith_separable", &one),
+        1.0,
+        MANY_ROUNDINGS,
+        "k = 1/2",
+    );
     let skin = json!({ "m": 0.3, "rho_s": 0.5, "f0": 0.028 });
     let kelemen = json!({ "alpha": 0.3, "f0": 0.028 });
-    same(&*build("kelemen-skin", &skin), &*build("kelemen", &kelemen), 0.5, 1e-13, "skin");
+    same(&*build("kelemen-skin", &skin), &*build("kelemen", &kelemen), 0.5, DIGIT_LOST, "skin");
     let punctual = json!({ "m": 0.3, "rho_s": 0.5, "f0": 0.028, "units": "punctual" });
     same(
         &*build("kelemen-skin", &punctual),
         &*build("kelemen-skin", &skin),
         std::f64::consts::PI,
-        1e-14,
+        MANY_ROUNDINGS,
         "pi",
     );
     // Blinn-Phong approaches Beckmann of equal peak
@@ -132,7 +148,7 @@ fn models_that_are_the_same_have_the_same_values() {
     for t in [0.0, 0.5, 1.0, 2.0] {
         let (wo, wi) = (frame::spherical(0.4, 0.0), frame::spherical(0.4 + t * alpha, std::f64::consts::PI));
         let (x, y) = (a.eval(wo, wi), b.eval(wo, wi));
-        assert!((x - y).abs() <= 1e-4 * y, "Blinn {t}: {x} {y}");
+        near!(x, y, LIMIT_FAR * y, "Blinn {t}: {x} {y}");
     }
 }
 
@@ -142,7 +158,7 @@ fn closed_forms_of_albedos() {
     for m in [0.05, 0.3, 1.0] {
         let e = albedo(&*build("kelemen", &json!({ "alpha": m })), 1.0, 1e-12);
         let expected = 1.0 + m * m * libm::expm1(-1.0 / (m * m));
-        assert!((e.value[0] - expected).abs() < 1e-11, "{m}: {} {expected}", e.value[0]);
+        near!(e.value[0], expected, INTEGRAL_11, "{m}: {} {expected}", e.value[0]);
     }
     // the transformed cosine keeps its albedo
     for roughness in [0.05, 0.3, 1.0] {
@@ -150,8 +166,8 @@ fn closed_forms_of_albedos() {
         for mu in [0.02, 0.3, 1.0] {
             let chart = albedo(&*model, mu, 1e-10);
             let exact = integrate(&*model, mu, &[Functional::One], 1e-10).unwrap().value[0];
-            assert!((chart.value[0] - exact).abs() <= chart.error[0] + 1e-13, "{roughness} {mu}");
-            assert!(chart.error[0] <= 1e-8, "{roughness} {mu}: {:e}", chart.error[0]);
+            near!(chart.value[0], exact, chart.error[0] + DIGIT_LOST, "{roughness} {mu}");
+            assert!(chart.error[0] <= INTEGRAL_8, "{roughness} {mu}: {:e}", chart.error[0]);
         }
     }
 }
@@ -183,7 +199,7 @@ fn samplers_agree_with_quadrature() {
             let [s] = cross_check::estimate(&*model, mu, [Functional::One], 11, 16, 2048);
             let off = (s.mean - e.value[0]).abs();
             assert!(
-                off <= 6.0 * s.standard_error + e.error[0] + 1e-7,
+                off <= 6.0 * s.standard_error + e.error[0] + INTEGRAL_7,
                 "{name} {params} mu {mu}: sampled {} +- {}, quadrature {} +- {}",
                 s.mean,
                 s.standard_error,

@@ -10,4 +10,5 @@ mod engines;
 mod foreign;
 mod sample;
 mod scene;
+mod tolerance;
 mod written;

@@ -1,6 +1,7 @@
 //! Rough dielectrics that transmit: R and T against reference values, reciprocity, reversibility, samplers, limits.
 #![allow(clippy::unwrap_used, clippy::float_cmp, reason = "test; exact values are asserted exactly")]
 
+use crate::tolerance::{DIGIT_LOST, DIGITS_LOST, DRAWN, INTEGRAL_5, INTEGRAL_9, near};
 use brdfbake::integrate::sobol::Sobol;
 use brdfbake::math::frame;
 use brdfbake::models::{self, Brdf, Params};
@@ -39,8 +40,8 @@ fn both_parts_match_reference_values() {
         let digits: i32 = r[3].parse().unwrap();
         let known = libm::pow(10.0, f64::from(1 - digits)) * expected;
         let off = (got - expected).abs();
-        assert!(off <= error + known + 1e-13, "{} {}: off by {off:e}, estimate {error:e}", &r[0], &r[1]);
-        assert!(error <= 1e-9, "{} {}: estimate {error:e}", &r[0], &r[1]);
+        assert!(off <= error + known + DIGIT_LOST, "{} {}: off by {off:e}, estimate {error:e}", &r[0], &r[1]);
+        assert!(error <= INTEGRAL_9, "{} {}: estimate {error:e}", &r[0], &r[1]);
         count += 1;
     }
     assert_eq!(count, 14);
@@ -58,7 +59,7 @@ fn radiance_over_the_squared_index_is_reciprocal() {
                 let (down, up) = (model.eval(below, above), model.eval(above, below));
                 // light leaving below has n_o = eta
                 let scale = down.abs().max(1e-12);
-                assert!((down / (eta * eta) - up).abs() <= 1e-12 * scale, "{masking} {eta} {i}: {down} {up}");
+                near!(down / (eta * eta), up, DIGITS_LOST * scale, "{masking} {eta} {i}: {down} {up}");
                 assert!(down >= 0.0 && down.is_finite());
             }
         }
@@ -95,11 +96,7 @@ fn nothing_is_made_and_smooth_interfaces_lose_nothing() {
                 );
                 let (t, error) = transmitted(&*narrow, mu, 1e-6);
                 if (mu - fresnel::cos_critical(eta)).abs() > 0.05 {
-                    assert!(
-                        (t - (1.0 - f)).abs() <= error + 1e-3,
-                        "{name} {eta} {mu}: T = {t}, 1 - F = {}",
-                        1.0 - f
-                    );
+                    near!(t, (1.0 - f), error + 1e-3, "{name} {eta} {mu}: T = {t}, 1 - F = {}", 1.0 - f);
                 }
             }
         }
@@ -116,7 +113,7 @@ fn flux_is_reversible_in_the_average() {
     };
     let eta = 1.5;
     let (down, up) = (average(eta), average(1.0 / eta));
-    assert!((down - eta * eta * up).abs() < 1e-5, "{down} {}", eta * eta * up);
+    near!(down, eta * eta * up, INTEGRAL_5, "{down} {}", eta * eta * up);
 }
 
 #[test]
@@ -137,7 +134,7 @@ fn the_sampler_agrees_with_quadrature() {
                 .sum();
             let (t, error) = transmitted(&*model, mu, 1e-7);
             let mean = sum / f64::from(n);
-            assert!((mean - t).abs() < 2e-3 + error, "{name} {eta} {masking} {mu}: {mean} {t}");
+            near!(mean, t, DRAWN + error, "{name} {eta} {masking} {mu}: {mean} {t}");
             // and radiance, which is compressed: T (n_o / n_i)^2
             let sum: f64 = Sobol::new(6)
                 .points(n)
@@ -145,7 +142,7 @@ fn the_sampler_agrees_with_quadrature() {
                 .map(|s| btdf.eval(wo, s.wi) * s.wi.z.abs() / s.pdf)
                 .sum();
             let mean = sum / f64::from(n) * eta * eta;
-            assert!((mean - t).abs() < 2e-3 + error, "{name} {eta} {masking} {mu}: radiance {mean} {t}");
+            near!(mean, t, DRAWN + error, "{name} {eta} {masking} {mu}: radiance {mean} {t}");
         }
     }
 }
@@ -157,6 +154,6 @@ fn reflection_from_below_is_that_of_the_inverse_index() {
     let (a, b) = (frame::spherical(0.4, 0.2), frame::spherical(1.1, 2.0));
     let down = |w: glam::DVec3| glam::DVec3::new(w.x, w.y, -w.z);
     let (x, y) = (above.eval(down(a), down(b)), below.eval(a, b));
-    assert!((x - y).abs() <= 1e-13 * y, "{x} {y}");
+    near!(x, y, DIGIT_LOST * y, "{x} {y}");
     assert_eq!(above.eval(a, glam::DVec3::X), 0.0);
 }

@@ -6,7 +6,6 @@ mod counted;
 mod examples;
 mod layering;
 mod layout;
-mod listed;
 mod mutants;
 mod programs;
 mod readme;

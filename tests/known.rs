@@ -1,6 +1,7 @@
 //! Every value that a model's entry claims to be known, through the public interface.
 #![allow(clippy::unwrap_used, reason = "test")]
 
+use crate::tolerance::{DIGIT_LOST, LIMIT_NEAR, RECIPROCITY, near};
 use brdfbake::integrate::View;
 use brdfbake::math::frame;
 use brdfbake::models::{Kind, MODELS, ModelInfo, ParamError, Params, Quantity};
@@ -34,7 +35,7 @@ fn known_values_are_reproduced() {
                     let reduced = integrate(&*model, mu, &[Functional::One], tolerance).unwrap();
                     let apart = (chart.value[0] - reduced.value[0]).abs();
                     assert!(
-                        apart <= chart.error[0] + reduced.error[0] + 1e-13,
+                        apart <= chart.error[0] + reduced.error[0] + DIGIT_LOST,
                         "{what}: chart and reduction {apart:e}"
                     );
                     let slack = 1e-12 * known.value;
@@ -90,7 +91,7 @@ fn every_model_holds_the_laws_that_it_claims() {
                 assert!(forth.is_finite() && forth >= 0.0, "{what}: f = {forth}");
                 if info.laws.reciprocal {
                     let scale = forth.abs().max(back.abs()).max(1e-20);
-                    assert!((forth - back).abs() <= 1e-11 * scale, "{what}: {forth} {back}");
+                    near!(forth, back, RECIPROCITY * scale, "{what}: {forth} {back}");
                 }
             }
             for mu in [0.0, 1e-3, 0.05, 0.3, 0.7, 1.0] {
@@ -117,7 +118,7 @@ fn a_model_that_is_not_passive_is_known_not_to_be() {
     let info = MODELS.iter().find(|m| m.id == "cook-torrance-1982").unwrap();
     let model = (info.build)(&params(info, &[("alpha", "0.05")])).unwrap();
     let e = integrate(&*model, 1.0, &[Functional::One], 1e-3).unwrap();
-    assert!((e.value[0] - 4.0).abs() < 0.01, "{}", e.value[0]);
+    near!(e.value[0], 4.0, LIMIT_NEAR, "{}", e.value[0]);
 }
 
 #[test]

@@ -76,3 +76,45 @@ fn every_file_of_tests_is_in_one_binary() {
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
+
+/// Bounds with no name that are left: those of one place, whose reason is beside them. It may fall.
+const UNNAMED: usize = 21;
+
+/// Does a line compare with a number such as `1e-9` that has no name?
+fn has_a_bound(line: &str) -> bool {
+    let code = line.split("//").next().unwrap_or_default().split('"').next().unwrap_or_default();
+    let asserts = ["assert!(", "near!(", "assert_relative("].iter().any(|a| code.contains(a));
+    let number = |text: &str| {
+        let mut digits = text.match_indices("e-").map(|(at, _)| (&text[..at], &text[at + 2..]));
+        digits.any(|(a, b)| {
+            a.ends_with(|c: char| c.is_ascii_digit()) && b.starts_with(|c: char| c.is_ascii_digit())
+        })
+    };
+    let right =
+        code.rsplit_once('<').map(|(_, right)| right).or(code.rsplit_once(", ").map(|(_, last)| last));
+    asserts && right.is_some_and(number)
+}
+
+#[test]
+fn bounds_have_names_and_reasons() {
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
+    let mut all = Vec::new();
+    sources(&tests, &mut all);
+    let mut found = Vec::new();
+    for file in all.iter().filter(|f| !f.starts_with(tests.join("sweep"))) {
+        let text = std::fs::read_to_string(file).unwrap();
+        let name = file.strip_prefix(&tests).unwrap().display().to_string();
+        found.extend(
+            text.lines()
+                .enumerate()
+                .filter(|(_, l)| has_a_bound(l))
+                .map(|(i, l)| format!("tests/{name}:{}: {}", i + 1, l.trim())),
+        );
+    }
+    assert!(
+        found.len() <= UNNAMED,
+        "{} bounds without a name, at most {UNNAMED} are allowed: take one of tests/tolerance.rs, or write one there with its reason\n{}",
+        found.len(),
+        found.join("\n")
+    );
+}

@@ -3,6 +3,10 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::cast_possible_truncation, reason = "test")]
 
 use crate::common::{axis, bake, npy, request, shared};
+use crate::tolerance::{
+    DIGIT_LOST, DIGITS_LOST, FEW_ROUNDINGS, FIT_EXACT, FIT_FOUND, FIT_READ, FIT_SMOOTH, HELD_AS_SINGLE,
+    MIDPOINT_CAP, MIDPOINT_SUM, near,
+};
 use brdfbake::grid::provenance::Waiver;
 use brdfbake::grid::{Axis, Direction, Table, Texel, Warp};
 use brdfbake::integrate::View;
@@ -122,7 +126,7 @@ fn lobes_are_nearer_than_the_shipped_ones_by_another_quadrature() {
         assert!(ours <= theirs + slack && ours <= refit + slack, "{place}: {ours:e}, {theirs:e}, {refit:e}");
         // and the error that the fit reports is the one that is seen
         let seen = libm::cbrt(ours);
-        assert!((own.l3 - seen).abs() <= 0.02 * seen + 1e-5, "{place}: reported {}, seen {seen}", own.l3);
+        near!(own.l3, seen, 0.02 * seen + FIT_FOUND, "{place}: reported {}, seen {seen}", own.l3);
     }
 }
 
@@ -133,9 +137,14 @@ fn magnitudes_are_the_exact_integrals() {
     let table = bake(&request("ltc-magnitude", "packed", "{}", axes), tolerance).unwrap();
     for s in shipped() {
         let [magnitude, fresnel, zero, sphere] = table.at(s.texel) else { panic!("four channels") };
-        assert!((magnitude - s.magnitude).abs() <= tolerance, "{}: {magnitude} {}", s.texel, s.magnitude);
-        assert!((fresnel - s.fresnel).abs() <= tolerance, "{}: {fresnel} {}", s.texel, s.fresnel);
-        assert!(zero.abs() == 0.0 && (sphere - s.sphere).abs() <= 5e-6, "{}: {sphere} {}", s.texel, s.sphere);
+        near!(*magnitude, s.magnitude, tolerance, "{}: {magnitude} {}", s.texel, s.magnitude);
+        near!(*fresnel, s.fresnel, tolerance, "{}: {fresnel} {}", s.texel, s.fresnel);
+        assert!(
+            zero.abs() == 0.0 && (sphere - s.sphere).abs() <= HELD_AS_SINGLE,
+            "{}: {sphere} {}",
+            s.texel,
+            s.sphere
+        );
     }
 }
 
@@ -155,21 +164,21 @@ fn spheres_agree_with_area_integration() {
         }
         let expected = sum * 2.0 * (1.0 - libm::cos(sigma)) / f64::from(n * n) / sin2;
         let got = sphere_light::form_factor(z, sin2);
-        assert!((got - expected).abs() < 2e-6, "z {z}, sin2 {sin2}: {got} {expected}");
+        near!(got, expected, MIDPOINT_CAP, "z {z}, sin2 {sin2}: {got} {expected}");
     }
-    assert!((sphere_light::form_factor(0.3, 0.0) - 0.3).abs() < 1e-15);
-    assert!(sphere_light::form_factor(-1.0, 1.0).abs() < 1e-12);
+    near!(sphere_light::form_factor(0.3, 0.0), 0.3, FEW_ROUNDINGS);
+    assert!(sphere_light::form_factor(-1.0, 1.0).abs() < DIGITS_LOST);
     // a half space seen from its border: half
-    assert!((sphere_light::form_factor(0.0, 1.0) - 0.5).abs() < 1e-12);
+    near!(sphere_light::form_factor(0.0, 1.0), 0.5, DIGITS_LOST);
 }
 
 #[test]
 fn what_is_a_transformed_cosine_is_found() {
     let lambert = ltc_fit::fit(&*model("lambert", "{}"), 0.3.into(), Family::Even, to(1e-4)).unwrap().fit;
     for (got, expected) in entries(&lambert.inverse).iter().zip([1.0, 0.0, 0.0, 1.0]) {
-        assert!((got - expected).abs() < 1e-6, "{lambert:?}");
+        near!(*got, expected, FIT_EXACT, "{lambert:?}");
     }
-    assert!(lambert.l3 < 1e-6 && lambert.variation < 1e-6, "{lambert:?}");
+    assert!(lambert.l3 < FIT_EXACT && lambert.variation < FIT_EXACT, "{lambert:?}");
     for (mu, roughness) in [(0.2, 0.3), (0.7, 0.5), (0.9, 0.9), (0.05, 0.7)] {
         let sheen = brdfbake::terms::ltc_sheen::Sheen::new(mu, roughness);
         let model = model("ltc-sheen", &format!("{{\"roughness\": {roughness}}}"));
@@ -177,9 +186,9 @@ fn what_is_a_transformed_cosine_is_found() {
             let fit = ltc_fit::fit(&*model, mu.into(), family, to(1e-4)).unwrap().fit;
             let expected = [1.0, 0.0, sheen.b / sheen.a, 1.0 / sheen.a];
             for (got, expected) in entries(&fit.inverse).iter().zip(expected) {
-                assert!((got - expected).abs() < 1e-5 * expected.abs().max(1.0), "{mu} {roughness}: {fit:?}");
+                near!(*got, expected, FIT_FOUND * expected.abs().max(1.0), "{mu} {roughness}: {fit:?}");
             }
-            assert!(fit.l3 < 1e-5, "{family:?}: {fit:?}");
+            assert!(fit.l3 < FIT_FOUND, "{family:?}: {fit:?}");
         }
     }
 }
@@ -199,13 +208,13 @@ fn the_stored_form_is_the_same_lobe() {
             let s = (1.0 - z * z).sqrt();
             let w = DVec3::new(s * libm::cos(phi), s * libm::sin(phi), z);
             let (p, q) = (m.density(w), b.density(w));
-            assert!((p - q).abs() <= 1e-13 * (p + 1.0), "{w}: {p} {q}");
+            near!(p, q, DIGIT_LOST * (p + 1.0), "{w}: {p} {q}");
             sum += q * 4.0 * PI / f64::from(n * n);
             // M undoes its inverse, but for a scale
-            assert!((b.undo(b.apply(w)) / b.minor() - w).length() < 1e-13);
+            assert!((b.undo(b.apply(w)) / b.minor() - w).length() < DIGIT_LOST);
         }
     }
-    assert!((sum - 1.0).abs() < 1e-4, "{sum}");
+    near!(sum, 1.0, MIDPOINT_SUM, "{sum}");
 }
 
 /// Other models: nearer than the cosine, lawful, and as the sampler of the model sees it (law `lobe`).
@@ -241,12 +250,12 @@ fn other_models_have_tables() {
             let model = sweep.model(point.values()).unwrap();
             let cosine = ltc_fit::judge(&*model, sweep.view(point.values()), &Inverse::COSINE, 11.0).unwrap();
             let l3 = table.at(texel)[4];
-            assert!(l3 <= cosine.l3 * 1.01 + 1e-5, "{id} {texel}: {l3} {}", cosine.l3);
+            assert!(l3 <= cosine.l3 * 1.01 + FIT_FOUND, "{id} {texel}: {l3} {}", cosine.l3);
         }
         let residuals = bound.baker.residuals(&table);
         let largest = table.values.iter().skip(4).step_by(6).fold(0.0f64, |m, v| m.max(*v));
         println!("{id}: L3 at most {largest:.4}, mean {:.4}", residuals[0].spread.mean);
-        assert!((residuals[0].spread.largest.value - largest).abs() <= 0.01 * largest + 1e-5, "{id}");
+        near!(residuals[0].spread.largest.value, largest, 0.01 * largest + FIT_FOUND, "{id}");
         // Zeltner's lobes are not reciprocal, and say so
         let waivers = [Waiver { law: "reciprocity".to_owned(), reason: "the model is not".to_owned() }];
         let waivers = if id == "ltc-sheen" { &waivers[..] } else { &[] };
@@ -288,14 +297,14 @@ fn layouts_agree() {
     for texel in 0..16 {
         let (p, q) = (stored("over-m22", &a, texel), stored("over-m33", &b, texel));
         for (x, y) in entries(&p).iter().zip(entries(&q)) {
-            assert!((x - y).abs() < 2e-3, "{p:?} {q:?}");
+            near!(*x, y, FIT_SMOOTH, "{p:?} {q:?}");
         }
         let sheared = stored("sheared", &c, texel);
         let at = a.grid.texel(texel);
         let ggx = model("ggx", &format!("{{\"alpha\": {}}}", at.values()[0]));
         let l3 = |m: &Inverse| ltc_fit::judge(&*ggx, at.values()[1].into(), m, 15.0).unwrap().l3;
-        assert!(l3(&p) <= l3(&sheared) + 1e-6);
-        assert!((l3(&p) - residual.at(texel)[0]).abs() < 3e-3);
+        assert!(l3(&p) <= l3(&sheared) + FIT_EXACT);
+        near!(l3(&p), residual.at(texel)[0], FIT_READ);
     }
 }
 

@@ -2,16 +2,12 @@
 #![allow(clippy::float_cmp, reason = "exact results are asserted exactly")]
 #![allow(clippy::excessive_precision, reason = "reference values are quoted with all their digits")]
 
+use crate::tolerance::{
+    DIFFERENCE_QUOTIENT, DIGIT_LOST, FEW_ROUNDINGS, LIBRARY_PRODUCT, MANY_ROUNDINGS, NEAREST, TEN_ROUNDINGS,
+    TWO_ULPS, ULP, UNIT_SQUARED, assert_relative, near,
+};
 use brdfbake::math::{frame, root, special, sum};
 use glam::DVec3;
-
-fn assert_relative(what: &str, got: f64, expected: f64, bound: f64) {
-    let error = (got - expected).abs() / expected.abs();
-    assert!(
-        error <= bound,
-        "{what}: got {got:e}, expected {expected:e}, relative error {error:e} > {bound:e}"
-    );
-}
 
 /// x, erfcx(x), K(x) = 1/(√π erfcx(x)) − x: mpmath, 50 digits; above x = 8 by 400 terms of the continued fraction.
 const ERFCX: &[(f64, f64, f64)] = &[
@@ -44,8 +40,8 @@ const ERFCX: &[(f64, f64, f64)] = &[
 #[test]
 fn erfcx_and_its_tail_match_reference_values() {
     for &(x, value, tail) in ERFCX {
-        assert_relative(&format!("erfcx({x:e})"), special::erfcx(x), value, 1e-15);
-        assert_relative(&format!("erfcx_tail({x:e})"), special::erfcx_tail(x), tail, 1e-15);
+        assert_relative(&format!("erfcx({x:e})"), special::erfcx(x), value, FEW_ROUNDINGS);
+        assert_relative(&format!("erfcx_tail({x:e})"), special::erfcx_tail(x), tail, FEW_ROUNDINGS);
     }
 }
 
@@ -54,8 +50,13 @@ fn erfcx_agrees_with_exp_times_erfc_where_that_is_good() {
     for i in 0..400 {
         let x = f64::from(i) * 0.01;
         // exp(x²) carries the rounding of x², up to 16 · 2⁻⁵³ here.
-        assert_relative("erfcx", special::erfcx(x), libm::exp(x * x) * special::erfc(x), 5e-15);
-        assert_relative("erfcx(-x)", special::erfcx(-x), libm::exp(x * x) * special::erfc(-x), 5e-15);
+        assert_relative("erfcx", special::erfcx(x), libm::exp(x * x) * special::erfc(x), LIBRARY_PRODUCT);
+        assert_relative(
+            "erfcx(-x)",
+            special::erfcx(-x),
+            libm::exp(x * x) * special::erfc(-x),
+            LIBRARY_PRODUCT,
+        );
     }
 }
 
@@ -67,7 +68,7 @@ fn erfcx_satisfies_its_differential_equation_at_the_tail() {
         let slope = (special::erfcx_tail(x + h) - special::erfcx_tail(x - h)) / (2.0 * h);
         let k = special::erfcx_tail(x);
         let expected = 2.0 * k * (x + k) - 1.0;
-        assert!((slope - expected).abs() < 1e-8, "x = {x}: K' = {slope}, from the equation {expected}");
+        near!(slope, expected, DIFFERENCE_QUOTIENT, "x = {x}: K' = {slope}, from the equation {expected}");
     }
 }
 
@@ -77,7 +78,10 @@ fn tail_is_finite_positive_and_falls_over_all_magnitudes() {
     for e in -320..=308 {
         let x = libm::pow(10.0, f64::from(e));
         let k = special::erfcx_tail(x);
-        assert!(k.is_finite() && k > 0.0 && k <= last * (1.0 + 1e-15), "K({x:e}) = {k:e} after {last:e}");
+        assert!(
+            k.is_finite() && k > 0.0 && k <= last * (1.0 + FEW_ROUNDINGS),
+            "K({x:e}) = {k:e} after {last:e}"
+        );
         last = k;
     }
     assert_eq!(special::erfcx_tail(-1.0), special::erfcx_tail(0.0));
@@ -85,11 +89,11 @@ fn tail_is_finite_positive_and_falls_over_all_magnitudes() {
 
 #[test]
 fn constants_and_small_helpers() {
-    assert_relative("√π", special::SQRT_PI, std::f64::consts::PI.sqrt(), 2.3e-16);
-    assert_relative("1/√π", special::FRAC_1_SQRT_PI, 0.5641895835477562869, 2e-16);
+    assert_relative("√π", special::SQRT_PI, std::f64::consts::PI.sqrt(), ULP);
+    assert_relative("1/√π", special::FRAC_1_SQRT_PI, 0.5641895835477562869, ULP);
     assert_eq!(special::exprel(0.0), 1.0);
-    assert_relative("exprel(1e-9)", special::exprel(1e-9), 1.000000000500000000167, 4e-16);
-    assert_relative("exprel(-2)", special::exprel(-2.0), 0.4323323583816936540530, 4e-16);
+    assert_relative("exprel(1e-9)", special::exprel(1e-9), 1.000000000500000000167, TWO_ULPS);
+    assert_relative("exprel(-2)", special::exprel(-2.0), 0.4323323583816936540530, TWO_ULPS);
     assert_eq!(special::circle(0.25), (0.0, 1.0));
     assert_eq!(special::circle(0.5), (-1.0, 0.0));
     assert_eq!(special::circle(0.75), (0.0, -1.0));
@@ -98,8 +102,8 @@ fn constants_and_small_helpers() {
         let u = f64::from(i) / 1000.0;
         let (cos, sin) = special::circle(u);
         let (s, c) = libm::sincos(2.0 * std::f64::consts::PI * u);
-        assert!((cos - c).abs() < 2e-15 && (sin - s).abs() < 2e-15, "u = {u}");
-        assert_relative("cos² + sin²", cos * cos + sin * sin, 1.0, 4e-16);
+        assert!((cos - c).abs() < TEN_ROUNDINGS && (sin - s).abs() < TEN_ROUNDINGS, "u = {u}");
+        assert_relative("cos² + sin²", cos * cos + sin * sin, 1.0, TWO_ULPS);
     }
 }
 
@@ -130,7 +134,7 @@ const GAMMA_HALF: [(f64, f64); 10] = [
 #[test]
 fn ratios_of_gamma_functions_match_reference_values() {
     for (z, expected) in GAMMA_HALF {
-        assert_relative(&format!("z = {z}"), special::gamma_half_ratio(z), expected, 1e-14);
+        assert_relative(&format!("z = {z}"), special::gamma_half_ratio(z), expected, MANY_ROUNDINGS);
     }
     assert_eq!(special::gamma_half_ratio(0.0), 0.0);
 }
@@ -138,13 +142,13 @@ fn ratios_of_gamma_functions_match_reference_values() {
 #[test]
 fn roots_of_rising_functions() {
     let cube = |x: f64| (x * x * x - 2.0, 3.0 * x * x);
-    assert_relative("cube root", root::solve(0.0, 2.0, cube), 1.2599210498948731648, 3e-16);
+    assert_relative("cube root", root::solve(0.0, 2.0, cube), 1.2599210498948731648, ULP);
     // A flat start sends Newton out of the bracket; bisection brings it back.
     let steep = |x: f64| {
         (libm::tanh(50.0 * (x - 0.9)), 50.0 / libm::cosh(50.0 * (x - 0.9)) / libm::cosh(50.0 * (x - 0.9)))
     };
-    assert_relative("tanh", root::solve(-1.0, 1.0, steep), 0.9, 1e-14);
-    assert_relative("one sign", root::solve(0.0, 1.0, |x| (x - 5.0, 1.0)), 1.0, 1e-14);
+    assert_relative("tanh", root::solve(-1.0, 1.0, steep), 0.9, MANY_ROUNDINGS);
+    assert_relative("one sign", root::solve(0.0, 1.0, |x| (x - 5.0, 1.0)), 1.0, MANY_ROUNDINGS);
 }
 
 #[test]
@@ -179,11 +183,16 @@ fn directions_and_angles_are_inverse_to_each_other() {
     for theta in [1e-9, 1e-3, 0.5, 1.25, 1.5625, 2.0, 3.125] {
         for phi in [-3.0, -0.5, 0.25, 1.5, 3.0] {
             let w = frame::spherical(theta, phi);
-            assert_relative("length", w.length_squared(), 1.0, 5e-16);
-            assert_relative("theta", frame::theta(w), theta, 1e-13);
-            assert_relative("phi", frame::phi(w), phi, 1e-15);
-            assert_relative("sin", frame::sin_theta(w), libm::sin(theta), 4e-16);
-            assert_relative("tan²", frame::tan2_theta(w), libm::tan(theta) * libm::tan(theta), 1e-14);
+            assert_relative("length", w.length_squared(), 1.0, UNIT_SQUARED);
+            assert_relative("theta", frame::theta(w), theta, DIGIT_LOST);
+            assert_relative("phi", frame::phi(w), phi, FEW_ROUNDINGS);
+            assert_relative("sin", frame::sin_theta(w), libm::sin(theta), TWO_ULPS);
+            assert_relative(
+                "tan²",
+                frame::tan2_theta(w),
+                libm::tan(theta) * libm::tan(theta),
+                MANY_ROUNDINGS,
+            );
             assert_eq!(frame::mu(w), frame::cos_theta(w).abs());
             assert_eq!(frame::cos2_theta(w), w.z * w.z);
             assert_eq!(frame::sin2_theta(w), w.x * w.x + w.y * w.y);
@@ -200,10 +209,10 @@ fn reflection_about_the_half_vector_gives_the_other_direction() {
     for (a, b) in [((0.5, 0.0), (1.25, 3.0)), ((1.5, 0.25), (1.46875, 3.375)), ((0.875, 1.0), (0.875, 1.0))] {
         let (wo, wi) = (frame::spherical(a.0, a.1), frame::spherical(b.0, b.1));
         let half = frame::half_vector(wo, wi).unwrap();
-        assert!((frame::reflect(wo, half.wh) - wi).length() < 1e-14);
-        assert_relative("wo.wh", half.cos_d, wo.dot(half.wh), 1e-14);
-        assert_relative("wi.wh", half.cos_d, wi.dot(half.wh), 1e-14);
-        assert_relative("|H|²", half.length_squared, 2.0 + 2.0 * wo.dot(wi), 1e-13);
+        assert!((frame::reflect(wo, half.wh) - wi).length() < MANY_ROUNDINGS);
+        assert_relative("wo.wh", half.cos_d, wo.dot(half.wh), MANY_ROUNDINGS);
+        assert_relative("wi.wh", half.cos_d, wi.dot(half.wh), MANY_ROUNDINGS);
+        assert_relative("|H|²", half.length_squared, 2.0 + 2.0 * wo.dot(wi), DIGIT_LOST);
         assert_eq!(Some(half), frame::half_vector(wi, wo), "symmetric to the bit");
         assert!(frame::both_above(wo, wi) && !frame::both_above(wo, -wi));
     }
@@ -215,7 +224,7 @@ fn reflect_matches_reference_values() {
     // points_basics.csv, rows reflect_x, reflect_y, reflect_z.
     let (w, n) = (frame::spherical(0.5, 0.0), frame::spherical(0.125, 3.140625));
     let r = frame::reflect(w, n);
-    assert_relative("x", r.x, -0.68163867232960183, 1e-14);
-    assert!((r.y - 0.00019567232582554657).abs() < 1e-16);
-    assert_relative("z", r.z, 0.73168892440509076, 1e-14);
+    assert_relative("x", r.x, -0.68163867232960183, MANY_ROUNDINGS);
+    near!(r.y, 0.00019567232582554657, NEAREST);
+    assert_relative("z", r.z, 0.73168892440509076, MANY_ROUNDINGS);
 }

@@ -18,3 +18,4 @@ mod renderers;
 mod sheen;
 mod single;
 mod terms;
+mod tolerance;

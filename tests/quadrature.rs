@@ -4,21 +4,15 @@
 #![allow(clippy::unwrap_used, reason = "a test may fail by panicking")]
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cell numbers are small")]
 
+use crate::tolerance::{
+    ASYMPTOTIC, DOUBLE_DOUBLE, DRAWN_SIGMA_FEW, FEW_ROUNDINGS, LONG_SUM, NEAREST, assert_relative, near,
+};
 use brdfbake::integrate::gauss::{self, MAX_ORDER};
 use brdfbake::integrate::hammersley;
 use brdfbake::integrate::sobol::{Sobol, replicate_mean};
 use brdfbake::math::double::Double;
 use brdfbake::math::sum::compensated_sum;
 use glam::DVec2;
-
-#[track_caller]
-fn assert_relative(what: &str, got: f64, expected: f64, bound: f64) {
-    let error = (got - expected).abs() / expected.abs();
-    assert!(
-        error <= bound,
-        "{what}: got {got:e}, expected {expected:e}, relative error {error:e} > {bound:e}"
-    );
-}
 
 /// Order, index, node, weight on [0, 1]: mpmath, 50 digits, Newton from cos(π (i + 3/4)/(n + 1/2)).
 const GAUSS: &[(usize, usize, f64, f64)] = &[
@@ -70,7 +64,12 @@ fn gauss_rules_are_symmetric_rising_and_sum_to_one() {
         assert!(rule.nodes[0] > 0.0 && rule.nodes[order - 1] < 1.0, "order {order}");
         assert!(rule.nodes.windows(2).all(|pair| pair[0] < pair[1]), "order {order}: nodes rise");
         assert!(rule.weights.iter().all(|w| *w > 0.0), "order {order}: weights are positive");
-        assert_relative(&format!("order {order}"), compensated_sum(rule.weights.iter().copied()), 1.0, 1e-16);
+        assert_relative(
+            &format!("order {order}"),
+            compensated_sum(rule.weights.iter().copied()),
+            1.0,
+            NEAREST,
+        );
         if order % 2 == 1 {
             assert_eq!(rule.nodes[order / 2], 0.5, "order {order}: the middle");
         }
@@ -85,7 +84,12 @@ fn gauss_rules_are_exact_to_degree_2n_minus_1_and_no_further() {
         for degree in 0..2 * order {
             let degree = i32::try_from(degree).unwrap();
             let got = rule.integrate(0.0, 1.0, |x| libm::pow(x, f64::from(degree)));
-            assert_relative(&format!("order {order}, x^{degree}"), got, 1.0 / f64::from(degree + 1), 3e-15);
+            assert_relative(
+                &format!("order {order}, x^{degree}"),
+                got,
+                1.0 / f64::from(degree + 1),
+                LONG_SUM,
+            );
         }
         if order <= 12 {
             // The error for x^2n is n!⁴/((2n + 1) (2n)!²) times its derivative (2n)!/(2n)!, on [0, 1].
@@ -94,8 +98,10 @@ fn gauss_rules_are_exact_to_degree_2n_minus_1_and_no_further() {
             let expected =
                 square(square(factorial(n))) / ((2.0 * n + 1.0) * factorial(2.0 * n) * factorial(2.0 * n));
             let got = 1.0 / (2.0 * n + 1.0) - rule.integrate(0.0, 1.0, |x| libm::pow(x, 2.0 * n));
-            assert!(
-                (got - expected).abs() < 1e-15 + 1e-3 * expected,
+            near!(
+                got,
+                expected,
+                FEW_ROUNDINGS + ASYMPTOTIC * expected,
                 "order {order}: {got:e}, formula {expected:e}"
             );
         }
@@ -104,13 +110,23 @@ fn gauss_rules_are_exact_to_degree_2n_minus_1_and_no_further() {
 
 #[test]
 fn gauss_on_smooth_functions_and_intervals() {
-    assert_relative("∫ exp", gauss::rule(16).integrate(-1.0, 2.0, libm::exp), 7.0211766577592084, 1e-15);
-    assert_relative("∫ cos", gauss::rule(20).integrate(0.0, 1.5, libm::cos), 0.9974949866040544309, 1e-15);
+    assert_relative(
+        "∫ exp",
+        gauss::rule(16).integrate(-1.0, 2.0, libm::exp),
+        7.0211766577592084,
+        FEW_ROUNDINGS,
+    );
+    assert_relative(
+        "∫ cos",
+        gauss::rule(20).integrate(0.0, 1.5, libm::cos),
+        0.9974949866040544309,
+        FEW_ROUNDINGS,
+    );
     // A backward interval has the opposite sign.
-    assert_relative("∫ backward", gauss::rule(8).integrate(1.0, 0.0, |x| x), -0.5, 1e-15);
+    assert_relative("∫ backward", gauss::rule(8).integrate(1.0, 0.0, |x| x), -0.5, FEW_ROUNDINGS);
     // An algebraic end at 0: sqrt(x) in x = t² is exact; the relative accuracy of small nodes carries it.
     let got = gauss::rule(256).integrate(0.0, 1.0, |t| 2.0 * t * t);
-    assert_relative("∫ sqrt", got, 2.0 / 3.0, 1e-15);
+    assert_relative("∫ sqrt", got, 2.0 / 3.0, FEW_ROUNDINGS);
 }
 
 #[test]
@@ -128,10 +144,10 @@ fn orders_outside_the_table_are_clamped_and_rules_are_shared() {
 fn double_double_keeps_106_bits() {
     let third = Double::from(1.0).over(3.0);
     let rest = third * Double::from(3.0) - Double::from(1.0);
-    assert!(rest.to_f64().abs() < 1e-31, "{rest:?}");
+    assert!(rest.to_f64().abs() < DOUBLE_DOUBLE, "{rest:?}");
     let seven = Double::sum(7.0, 1e-20);
     let rest = seven * seven.reciprocal() - Double::from(1.0);
-    assert!(rest.to_f64().abs() < 1e-31, "{rest:?}");
+    assert!(rest.to_f64().abs() < DOUBLE_DOUBLE, "{rest:?}");
     let product = Double::product(1.0 + f64::EPSILON, 1.0 - f64::EPSILON);
     assert_eq!((product.hi, product.lo), (1.0, -f64::EPSILON * f64::EPSILON));
     assert_eq!((Double::sum(1.0, 1e-20) - Double::from(1.0)).to_f64(), 1e-20);
@@ -196,10 +212,7 @@ fn sobol_seeds_are_reproducible_and_independent() {
             ("xy", mean(&|p| p.x * p.y), 0.0, 0.0833),
         ] {
             let bound = 4.5 * spread * sigma;
-            assert!(
-                (got - expected).abs() < bound,
-                "index {index}: mean {what} = {got}, expected {expected} ± {bound}"
-            );
+            near!(got, expected, bound, "index {index}: mean {what} = {got}, expected {expected} ± {bound}");
         }
     }
 }
@@ -213,7 +226,10 @@ fn standard_errors_of_replicates_are_honest() {
     for seed in 0..trials {
         let [smooth, kink] =
             replicate_mean(seed, 16, 256, |u| [u.x * libm::exp(u.x * u.y), (u.x + u.y - 1.0).abs()]);
-        assert!(smooth.standard_error < 3e-4 && kink.standard_error < 3e-4, "{smooth:?} {kink:?}");
+        assert!(
+            smooth.standard_error < DRAWN_SIGMA_FEW && kink.standard_error < DRAWN_SIGMA_FEW,
+            "{smooth:?} {kink:?}"
+        );
         for (estimate, exact) in [(smooth, e2), (kink, 1.0 / 3.0)] {
             let error = (estimate.mean - exact).abs();
             assert!(error < 6.0 * estimate.standard_error, "seed {seed}: {estimate:?}, exact {exact}");

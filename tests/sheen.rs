@@ -8,6 +8,7 @@
     reason = "test"
 )]
 
+use crate::tolerance::{DIGITS_LOST, INTEGRAL_5_TWICE, INTEGRAL_6, INTEGRAL_8, INTEGRAL_9, near};
 use brdfbake::grid::{Axis, Quantity, Texel};
 use brdfbake::integrate::gauss;
 use brdfbake::integrate::slab::{Medium, Slab};
@@ -56,7 +57,7 @@ fn modes_of_the_kernel() {
             for (m, (mode, sum)) in modes.iter().zip(&sums).enumerate() {
                 // what is left is the rounding of `to - from`, and of h
                 let off = (mode - sum).abs();
-                assert!(off < 1e-9 * modes[0], "sigma {sigma}, {from} to {to}, m = {m}: {mode} {sum}");
+                assert!(off < INTEGRAL_9 * modes[0], "sigma {sigma}, {from} to {to}, m = {m}: {mode} {sum}");
             }
         }
     }
@@ -81,7 +82,7 @@ fn the_kernel_scatters_what_it_takes() {
                 }
             }
             let area = sggx::projected_area(sigma, direction(from, 0.0));
-            assert!((sum - area).abs() < 1e-8 * area, "sigma {sigma}, theta {from}: {sum} {area}");
+            near!(sum, area, INTEGRAL_8 * area, "sigma {sigma}, theta {from}: {sum} {area}");
         }
     }
 }
@@ -93,14 +94,14 @@ fn what_is_not_reflected_is_transmitted() {
     for sigma in [1e-4, 1e-3, 0.01, 0.1, 0.5, 1.0] {
         let [coarse, fine] = [4, 6].map(|order| Slab::solve(&Fibres(sigma), order, 1).unwrap());
         assert!(
-            fine.unbalance < 0.3 * coarse.unbalance && fine.unbalance < 2e-5,
+            fine.unbalance < 0.3 * coarse.unbalance && fine.unbalance < INTEGRAL_5_TWICE,
             "{sigma}: {}",
             fine.unbalance
         );
         for k in 0..100 {
             let theta = 1.57 * f64::from(k) / 99.0;
             let sum = fine.reflected(theta) + fine.transmitted(theta);
-            assert!((sum - 1.0).abs() < 1e-8, "sigma {sigma}, theta {theta}: {sum}");
+            near!(sum, 1.0, INTEGRAL_8, "sigma {sigma}, theta {theta}: {sum}");
             assert!(fine.reflected(theta) > -1e-8 && fine.transmitted(theta) > -1e-8);
         }
     }
@@ -116,7 +117,7 @@ fn multiple_scattering_is_reciprocal() {
         slab.multiple(b).modes(a, &mut back);
         assert!(there[0] > 0.0);
         for (x, y) in there.iter().zip(&back) {
-            assert!((x - y).abs() < 1e-12 * there[0], "{a} {b}: {x} {y}");
+            near!(*x, *y, DIGITS_LOST * there[0], "{a} {b}");
         }
     }
 }
@@ -172,10 +173,10 @@ fn walks_end_where_the_solution_says() {
         let theta = f64::acos(mu);
         let (albedo, found) = (slab.reflected(theta), hits / n);
         let deviation = (albedo * (1.0 - albedo) / n).sqrt();
-        assert!((found - albedo).abs() < 4.0 * deviation, "mu {mu}, sigma {sigma}: {found} {albedo}");
+        near!(found, albedo, 4.0 * deviation, "mu {mu}, sigma {sigma}: {found} {albedo}");
         let turned = mean_cosine(&slab, sigma, theta);
         let deviation = ((squares / n - (sum / n) * (sum / n)) / n).sqrt();
-        assert!((sum / n - turned).abs() < 4.0 * deviation, "mu {mu}, sigma {sigma}: {} {turned}", sum / n);
+        near!(sum / n, turned, 4.0 * deviation, "mu {mu}, sigma {sigma}: {} {turned}", sum / n);
     }
 }
 
@@ -214,7 +215,7 @@ fn the_published_table_is_cut_short() {
         let mut numbers = Numbers(3);
         let hits = (0..count).filter(|_| walk(&mut numbers, sigma, mu, 16).is_some()).count();
         let found = hits as f64 / f64::from(count);
-        assert!((found - published).abs() < 4.0 * (0.25 / f64::from(count)).sqrt(), "{found} {published}");
+        near!(found, published, 4.0 * (0.25 / f64::from(count)).sqrt(), "{found} {published}");
         let albedo = Slab::solve(&Fibres(sigma), 6, 1).unwrap().reflected(f64::acos(mu));
         assert!(albedo - published > 0.06, "{albedo}");
     }
@@ -245,7 +246,7 @@ fn estimates_are_honest() {
                 let (off, told) = ((coarse.value[c] - fine.value[c]).abs(), coarse.error[c]);
                 all += 1;
                 beyond += i32::from(off > told + 1e-7);
-                assert!(off <= 3.0 * told + 1e-6, "{id} at {mu}, {r}: {off:e} {told:e}");
+                assert!(off <= 3.0 * told + INTEGRAL_6, "{id} at {mu}, {r}: {off:e} {told:e}");
             }
         }
     }

@@ -2,6 +2,9 @@
 #![allow(clippy::unwrap_used, clippy::float_cmp, reason = "test")]
 
 use crate::common::{axis, bake, request};
+use crate::tolerance::{
+    AXIS_STEEP, AXIS_STEP, DIGITS_LOST, HAMMERSLEY, INTEGRAL_9, INTEGRAL_10, INTEGRAL_11, near,
+};
 use brdfbake::grid::{Axis, Direction, Grid, Quantity, Texel, Warp, lookup};
 use brdfbake::models::{self, Params};
 use brdfbake::tables::average_albedo::average;
@@ -61,8 +64,8 @@ fn average_albedo_at_alpha_one_is_the_closed_form() {
     {
         let m = model("ggx", &format!(r#"{{"alpha": 1, "masking": "{masking}"}}"#));
         let e = average(&*m, Some(1.0), 1e-10).unwrap();
-        assert!((e.value[0] - expected).abs() <= 1e-10, "{masking}: {} expected {expected}", e.value[0]);
-        assert!((e.value[0] - expected).abs() <= e.error[0]);
+        near!(e.value[0], expected, INTEGRAL_10, "{masking}: {} expected {expected}", e.value[0]);
+        near!(e.value[0], expected, e.error[0]);
     }
 }
 
@@ -74,7 +77,7 @@ fn average_albedo_agrees_with_published_anchors() {
     {
         let m = model("ggx", &format!(r#"{{"alpha": {alpha}}}"#));
         let e = average(&*m, Some(alpha), 1e-9).unwrap();
-        assert!((e.value[0] - expected).abs() <= 1e-9, "alpha {alpha}: {}", e.value[0]);
+        near!(e.value[0], expected, INTEGRAL_9, "alpha {alpha}: {}", e.value[0]);
     }
 }
 
@@ -83,10 +86,13 @@ fn estimators_of_other_bakers_scatter_round_the_table() {
     for [mu, roughness, scale, bias] in reference().into_iter().filter(|r| r[0] > 0.3 && r[1] > 0.2) {
         let alpha = roughness * roughness;
         let d = hammersley_f64(mu, alpha, 4096);
-        assert!((d[0] - scale).abs() < 2e-3 && (d[1] - bias).abs() < 2e-3, "{mu} {roughness}: {d:?}");
+        assert!(
+            (d[0] - scale).abs() < HAMMERSLEY && (d[1] - bias).abs() < HAMMERSLEY,
+            "{mu} {roughness}: {d:?}"
+        );
         #[allow(clippy::cast_possible_truncation, reason = "the estimator is an f32 one")]
         let f = hammersley_f32(mu as f32, alpha as f32, 4096);
-        assert!((f64::from(f[0]) - scale).abs() < 2e-3, "{mu} {roughness}: {f:?}");
+        near!(f64::from(f[0]), scale, HAMMERSLEY, "{mu} {roughness}: {f:?}");
     }
 }
 
@@ -105,8 +111,8 @@ fn separable_and_correlated_masking_are_not_confused() {
     };
     let ln2 = std::f64::consts::LN_2;
     // Lommel-Seeliger, and 2 (1 - ln 2) / (1 + mu)
-    assert!((e("correlated") - (1.0 - 0.25 * libm::log(5.0))).abs() < 1e-11);
-    assert!((e("separable") - 2.0 * (1.0 - ln2) / 1.25).abs() < 1e-11);
+    near!(e("correlated"), (1.0 - 0.25 * libm::log(5.0)), INTEGRAL_11);
+    near!(e("separable"), 2.0 * (1.0 - ln2) / 1.25, INTEGRAL_11);
 }
 
 fn bake_verified(kind: &str, layout: &str, params: &str, axes: Vec<Axis>) -> Verified {
@@ -127,7 +133,7 @@ fn the_reader_returns_texels_and_the_reconstruction_error_is_what_it_says() {
     for texel in 0..table.grid.len() {
         let mut out = [0.0];
         table.read(&table.grid.texel(texel), &mut out);
-        assert!((out[0] - table.values[texel]).abs() < 1e-12, "texel {texel}");
+        near!(out[0], table.values[texel], DIGITS_LOST, "texel {texel}");
     }
     // by hand at one point between texels: a dense scan can not find a larger error than the report by much
     let report = Probe::new(&bound, 1e-9, 1 << 14).measure(&table.values);
@@ -259,7 +265,7 @@ proptest! {
         let value = axis.value_at(axis.coordinate(index), alpha);
         // near an end a strong warp leaves no digits of the value to come back from
         prop_assume!((1e-6..=1.0 - 1e-6).contains(&value));
-        prop_assert!((axis.index(value, alpha) - index).abs() < 1e-6 * n, "{axis:?} {index} {value}");
+        prop_assert!((axis.index(value, alpha) - index).abs() < AXIS_STEP * n, "{axis:?} {index} {value}");
     }
 
     /// A grid finds its own texels, couplings and derived quantities included.
@@ -270,6 +276,6 @@ proptest! {
         let point = grid.texel(texel);
         let [x, y, ..] = grid.index(&point);
         let [i, j, ..] = grid.unravel(texel);
-        prop_assert!((x - i as f64).abs() < 1e-4 && (y - j as f64).abs() < 1e-9, "{x} {i} {y} {j}");
+        prop_assert!((x - i as f64).abs() < AXIS_STEEP && (y - j as f64).abs() < INTEGRAL_9, "{x} {i} {y} {j}");
     }
 }

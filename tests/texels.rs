@@ -2,6 +2,7 @@
 //! threads.
 #![allow(clippy::unwrap_used, clippy::print_stderr, clippy::cast_possible_truncation, reason = "test")]
 
+use crate::tolerance::{DIGITS_LOST, FEW_ROUNDINGS, MANY_ROUNDINGS, near};
 use brdfbake::cancel::Cancel;
 use brdfbake::encode::read;
 use brdfbake::grid::fit::{Samples, places};
@@ -32,7 +33,7 @@ const ALL: [f64; 2] = [-1e9, 1e9];
 fn the_areas_add_up_to_the_domain() {
     for grid in [line(7, Texel::Center), line(7, Texel::Endpoint)] {
         let sum: f64 = places(&grid, 4).iter().map(|p| p.1).sum();
-        assert!((sum - 1.0).abs() < 1e-14, "{sum}");
+        near!(sum, 1.0, MANY_ROUNDINGS, "{sum}");
     }
 }
 
@@ -42,14 +43,14 @@ fn least_squares_of_a_parabola_are_its_projection() {
     let grid = line(2, Texel::Endpoint);
     let (samples, truth, exact) = sampled(&grid, |x| x * x);
     let fit = samples.least_squares(&truth, &exact, ALL, &Cancel::new());
-    assert!((fit[0] + 1.0 / 6.0).abs() < 1e-12 && (fit[1] - 5.0 / 6.0).abs() < 1e-12, "{fit:?}");
+    assert!((fit[0] + 1.0 / 6.0).abs() < DIGITS_LOST && (fit[1] - 5.0 / 6.0).abs() < DIGITS_LOST, "{fit:?}");
     // far from the ends a linear spline of spacing h lies h^2 / 6 below x^2 at its knots
     let n = 65;
     let grid = line(n, Texel::Endpoint);
     let (samples, truth, exact) = sampled(&grid, |x| x * x);
     let fit = samples.least_squares(&truth, &exact, ALL, &Cancel::new());
     let h = 1.0 / (n - 1) as f64;
-    assert!((exact[n / 2] - fit[n / 2] - h * h / 6.0).abs() < 1e-10 * h * h, "{}", exact[n / 2] - fit[n / 2]);
+    near!(exact[n / 2] - fit[n / 2], h * h / 6.0, 1e-10 * h * h, "{}", exact[n / 2] - fit[n / 2]);
 }
 
 #[test]
@@ -59,7 +60,7 @@ fn minimax_of_a_parabola_halves_its_error() {
         let grid = line(n, Texel::Endpoint);
         let (samples, truth, exact) = sampled(&grid, |x| x * x);
         let h = 1.0 / (n - 1) as f64;
-        assert!((samples.largest(&exact, &truth) - h * h / 4.0).abs() < 1e-14);
+        near!(samples.largest(&exact, &truth), h * h / 4.0, MANY_ROUNDINGS);
         let got = samples.largest(&samples.minimax(&truth, &exact, ALL, &Cancel::new()), &truth) / (h * h);
         assert!((0.125 - 1e-12..0.130).contains(&got), "{n}: {got} h^2");
     }
@@ -73,7 +74,7 @@ fn a_straight_line_stays_what_it_is() {
         samples.least_squares(&truth, &exact, ALL, &Cancel::new()),
         samples.minimax(&truth, &exact, ALL, &Cancel::new()),
     ] {
-        assert!(fit.iter().zip(&exact).all(|(a, b)| (a - b).abs() < 1e-14), "{fit:?}");
+        assert!(fit.iter().zip(&exact).all(|(a, b)| (a - b).abs() < MANY_ROUNDINGS), "{fit:?}");
     }
 }
 
@@ -83,7 +84,7 @@ fn fits_stay_in_the_range_and_the_others_are_solved_again() {
     let grid = line(2, Texel::Endpoint);
     let (samples, truth, exact) = sampled(&grid, |x| x * x);
     let fit = samples.least_squares(&truth, &exact, [0.0, 1.0], &Cancel::new());
-    assert!(fit[0].abs() < 1e-14 && (fit[1] - 0.75).abs() < 1e-12, "{fit:?}");
+    assert!(fit[0].abs() < MANY_ROUNDINGS && (fit[1] - 0.75).abs() < DIGITS_LOST, "{fit:?}");
     let fit = samples.minimax(&truth, &exact, [0.0, 1.0], &Cancel::new());
     assert!(fit.iter().all(|v| (0.0..=1.0).contains(v)), "{fit:?}");
 }
@@ -143,7 +144,7 @@ fn minimax_is_never_worse_than_exact_as_stored() {
         let got = file.reconstruction.unwrap().whole.largest.value;
         assert!(got <= exact.whole.largest.value, "{texel} {len}: {got}");
         let held = record.choices.iter().find(|c| c.texels == record.held).unwrap();
-        assert!((held.whole.largest.value - got).abs() < 1e-15);
+        near!(held.whole.largest.value, got, FEW_ROUNDINGS);
     }
 }
 

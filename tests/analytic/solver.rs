@@ -1,5 +1,6 @@
 //! The solver on functions whose best fits are known.
 
+use crate::tolerance::{EXCHANGE, EXCHANGE_SAMPLED, EXCHANGE_SAMPLED_TWICE, near};
 use brdfbake::cancel::Cancel;
 use brdfbake::math::rational::{Point, Terms, fit};
 
@@ -13,8 +14,12 @@ fn points(n: usize, f: impl Fn(f64) -> f64) -> Vec<Point> {
 fn a_parabola_by_a_line() {
     // Chebyshev: the best line for x^2 on [0, 1] is x - 1/8, off by 1/8 thrice
     let best = fit(&points(401, |x| x * x), &Terms::of_degree(1, 1, false), 1, 400, &Cancel::new()).unwrap();
-    assert!((best.largest - 0.125).abs() < 1e-3, "{best:?}");
-    assert!((best.above[0] + 0.125).abs() < 2e-3 && (best.above[1] - 1.0).abs() < 2e-3, "{best:?}");
+    near!(best.largest, 0.125, EXCHANGE_SAMPLED, "{best:?}");
+    assert!(
+        (best.above[0] + 0.125).abs() < EXCHANGE_SAMPLED_TWICE
+            && (best.above[1] - 1.0).abs() < EXCHANGE_SAMPLED_TWICE,
+        "{best:?}"
+    );
 }
 
 #[test]
@@ -33,18 +38,18 @@ fn a_rational_function_of_two_variables_is_found_again() {
         .map(|at| Point { at, base: 1.0, factor: -2.0, want: 1.0 - 2.0 * f(at), weight: 1.0, slack: 0.0 })
         .collect();
     let best = fit(&points, &Terms::of_degree(2, 2, true), 1, 60, &Cancel::new()).unwrap();
-    assert!(best.largest < 1e-9, "{best:?}");
+    assert!(best.largest < EXCHANGE, "{best:?}");
 }
 
 #[test]
 fn a_power_of_a_line_is_found_again() {
     let mut points = points(101, |x| (1.0 - 0.5 * x).powi(4));
     let best = fit(&points, &Terms::of_degree(1, 1, false), 4, 60, &Cancel::new()).unwrap();
-    assert!(best.largest < 1e-9, "{best:?}");
+    assert!(best.largest < EXCHANGE, "{best:?}");
     // what no choice can remove is counted, not fitted
     points.iter_mut().for_each(|p| p.slack = 0.25);
     let slack = fit(&points, &Terms::of_degree(1, 1, false), 4, 60, &Cancel::new()).unwrap();
-    assert!((slack.largest - 0.25).abs() < 1e-9, "{slack:?}");
+    near!(slack.largest, 0.25, EXCHANGE, "{slack:?}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! NumPy, raw, CSV, Radiance, PNG with codes of 8 bits; refusals.
 
 use super::support::{table, written};
+use crate::tolerance::{FEW_ROUNDINGS, near};
 use brdfbake::encode::option::words;
 use brdfbake::encode::read::{Sample, read_bytes};
 use brdfbake::encode::{ENCODERS, FileOption, Storage, encoder};
@@ -43,8 +44,8 @@ fn csv_has_coordinates_values_and_errors() {
     for (i, line) in lines.enumerate() {
         let numbers: Vec<f64> = line.split(',').map(|n| n.parse().unwrap()).collect();
         let (x, y) = ((i % 3) as f64, (i / 3) as f64);
-        assert!((numbers[0] - (x + 0.5) / 3.0).abs() < 1e-15);
-        assert!((numbers[1] - (y + 0.5) / 2.0 * 2.0).abs() < 1e-15);
+        near!(numbers[0], (x + 0.5) / 3.0, FEW_ROUNDINGS);
+        near!(numbers[1], (y + 0.5) / 2.0 * 2.0, FEW_ROUNDINGS);
         assert_eq!(numbers[2..4], values[2 * i..2 * i + 2]);
         assert_eq!(numbers[4..], t.errors[2 * i..2 * i + 2]);
     }
@@ -93,7 +94,7 @@ fn png_of_eight_bits_is_what_a_browser_gets() {
             let got: Vec<f64> = texel.iter().map(|c| f64::from(*c) / 255.0).collect();
             for c in 0..channels {
                 let v = if storage == Storage::Rgbd { got[c].powf(2.2) / got[3] } else { got[c] };
-                assert!((v - values[t * channels + c]).abs() < 1e-15);
+                near!(v, values[t * channels + c], FEW_ROUNDINGS);
             }
             if storage == Storage::Unorm8 && samples == 4 {
                 assert_eq!(got[2..], [0.0, 1.0]);

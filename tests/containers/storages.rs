@@ -1,5 +1,6 @@
 //! Coupled storages against an exhaustive search and the formulas of their readers.
 
+use crate::tolerance::{DIGITS_LOST, near};
 use brdfbake::encode::storage::{QuantiseError, STORAGES, Storage};
 use proptest::prelude::*;
 
@@ -50,11 +51,11 @@ proptest! {
         };
         let best = (1..=255).map(error).fold(f64::INFINITY, f64::min);
         let got = largest_error(quantised(Storage::Rgbd, texel), texel);
-        prop_assert!((got - best).abs() <= 1e-12 * got.max(1e-3), "{got} against {best}");
+        prop_assert!((got - best).abs() <= DIGITS_LOST * got.max(1e-3), "{got} against {best}");
         // its own encoder takes floor(255 / largest)
         let m = texel.iter().copied().fold(1e-6, f64::max);
         let theirs = error((255.0 / m).max(1.0).floor().min(255.0) as u8);
-        prop_assert!(got <= theirs * (1.0 + 1e-12));
+        prop_assert!(got <= theirs * (1.0 + DIGITS_LOST));
     }
 
     #[test]
@@ -127,7 +128,7 @@ fn what_cannot_be_stored_is_a_finding() {
     for s in [Storage::Unorm8, Storage::Rgb10a2, Storage::Unorm16] {
         let expected = QuantiseError::OutOfRange { value: 9.13, lo: 0.0, hi: 1.0, storage: s.id() };
         assert_eq!(fault(s, 9.13), expected);
-        assert!((s.quantise(9.13, [0.0, 10.0]).unwrap() - 9.13).abs() <= s.ulp(9.13, [0.0, 10.0]) / 2.0);
+        near!(s.quantise(9.13, [0.0, 10.0]).unwrap(), 9.13, s.ulp(9.13, [0.0, 10.0]) / 2.0);
     }
 }
 

@@ -1,6 +1,9 @@
 //! Closed forms, typed here as the papers have them, against quadrature in the models' charts.
 
 use crate::empirical::support::{albedo, average, model, quadrature};
+use crate::tolerance::{
+    DIGITS_LOST, FEW_ROUNDINGS, INTEGRAL_9, INTEGRAL_10, INTEGRAL_11, INTEGRAL_11_TWICE, NARROW_LOBE, near,
+};
 use brdfbake::integrate::View;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -8,7 +11,7 @@ const VIEWS: [f64; 9] = [0.0, 1e-3, 0.01, 0.1, 0.3, 0.55, 0.8, 0.99, 1.0];
 
 #[track_caller]
 fn near(what: &str, got: f64, expected: f64, bound: f64) {
-    assert!((got - expected).abs() <= bound, "{what}: got {got:.16}, expected {expected:.16}");
+    near!(got, expected, bound, "{what}: got {got:.16}, expected {expected:.16}");
 }
 
 /// Compares the quadrature and what tables get with a closed form at every view above the horizon, or on it.
@@ -17,8 +20,8 @@ fn check(name: &str, params: &str, on_horizon: bool, closed: impl Fn(f64) -> f64
     for mu in VIEWS.into_iter().filter(|mu| on_horizon || *mu > 0.0) {
         let e = quadrature(&*f, mu, 1e-11);
         let what = format!("{name} {params} mu {mu}");
-        near(&what, e.value[0], closed(mu), 1e-11 + 1e-12 * closed(mu));
-        near(&what, albedo(&*f, mu, 1e-11), closed(mu), 1e-11 + 1e-12 * closed(mu));
+        near(&what, e.value[0], closed(mu), INTEGRAL_11 + DIGITS_LOST * closed(mu));
+        near(&what, albedo(&*f, mu, 1e-11), closed(mu), INTEGRAL_11 + DIGITS_LOST * closed(mu));
     }
 }
 
@@ -54,7 +57,12 @@ fn fon_and_eon() {
         };
         check("fujii", &format!(r#"{{"rho": 0.7, "r": {r}}}"#), true, |mu| 0.7 * e(mu));
         let e_avg = a_f * (1.0 + k2 * r);
-        near("average of FON", average("fujii", &format!(r#"{{"rho": 1, "r": {r}}}"#), 1e-9), e_avg, 1e-9);
+        near(
+            "average of FON",
+            average("fujii", &format!(r#"{{"rho": 1, "r": {r}}}"#), 1e-9),
+            e_avg,
+            INTEGRAL_9,
+        );
         for rho in [0.2, 0.9, 1.0] {
             let rho_ms = rho * rho * e_avg / (1.0 - rho * (1.0 - e_avg));
             let params = format!(r#"{{"rho": {rho}, "r": {r}}}"#);
@@ -83,7 +91,7 @@ fn burley_and_frostbite() {
             "average of Burley",
             average("burley-diffuse", &format!(r#"{{"r": {r}}}"#), 1e-10),
             e_avg,
-            1e-10,
+            INTEGRAL_10,
         );
         let l = 1.0 - r + r / 1.51;
         check("frostbite-diffuse", &format!(r#"{{"rho": 0.9, "r": {r}}}"#), true, |mu| {
@@ -99,7 +107,7 @@ fn burley_and_frostbite() {
             "average of Frostbite",
             average("frostbite-diffuse", &format!(r#"{{"r": {r}}}"#), 1e-10),
             e_avg,
-            1e-10,
+            INTEGRAL_10,
         );
     }
 }
@@ -111,7 +119,7 @@ fn ashikhmin_shirley_diffuse() {
         0.6 * (1.0 - m * m * m * m * m)
     });
     let e_avg = average("ashikhmin-shirley-diffuse", r#"{"rd": 1, "rs": 0}"#, 1e-11);
-    near("23/28", e_avg, 23.0 / 28.0, 1e-11);
+    near("23/28", e_avg, 23.0 / 28.0, INTEGRAL_11);
 }
 
 #[test]
@@ -132,7 +140,7 @@ fn phong_at_both_ends() {
     for n in [0.0, 0.5, 1.0, 4.0, 9.0, 33.3, 1000.0, 1e5, 1e7] {
         let f = model("phong", &format!(r#"{{"kd": 0, "ks": 1, "n": {n}}}"#));
         let e = quadrature(&*f, 1.0, 1e-11);
-        near(&format!("E(1), n = {n}"), e.value[0], 1.0, 1e-11);
+        near(&format!("E(1), n = {n}"), e.value[0], 1.0, INTEGRAL_11);
         let e = quadrature(&*f, 0.0, 1e-11);
         let grazing = (n + 2.0) / (2.0 * PI) * beta(0.5 * (n + 1.0), 1.5);
         // lgamma loses digits to its size
@@ -140,12 +148,12 @@ fn phong_at_both_ends() {
             &format!("E(0), n = {n}"),
             e.value[0],
             grazing,
-            1e-11 + 1e-15 * n * libm::log(n + 1.0) * grazing,
+            INTEGRAL_11 + FEW_ROUNDINGS * n * libm::log(n + 1.0) * grazing,
         );
     }
     // E -> ks mu for narrow lobes
     let f = model("phong", r#"{"kd": 0, "ks": 1, "n": 1e7}"#);
-    near("narrow", albedo(&*f, 0.5, 1e-9), 0.5, 1e-6);
+    near("narrow", albedo(&*f, 0.5, 1e-9), 0.5, NARROW_LOBE);
 }
 
 #[test]
@@ -154,9 +162,9 @@ fn blinn_phong_at_normal_incidence() {
         let whole = 8.0 * PI * (n + libm::exp2(-0.5 * n)) / ((n + 2.0) * (n + 4.0));
         let params = format!(r#"{{"kd": 0, "ks": 1, "n": {n}}}"#);
         let e = |name: &str| quadrature(&*model(name, &params), 1.0, 1e-11).value[0];
-        near(&format!("exact, n = {n}"), e("blinn-phong"), 1.0, 1e-11);
-        near(&format!("n8, n = {n}"), e("blinn-phong-n8"), (n + 8.0) / (8.0 * PI) * whole, 1e-11);
-        near(&format!("modified, n = {n}"), e("blinn-phong-modified"), whole, 1e-11);
+        near(&format!("exact, n = {n}"), e("blinn-phong"), 1.0, INTEGRAL_11);
+        near(&format!("n8, n = {n}"), e("blinn-phong-n8"), (n + 8.0) / (8.0 * PI) * whole, INTEGRAL_11);
+        near(&format!("modified, n = {n}"), e("blinn-phong-modified"), whole, INTEGRAL_11);
     }
 }
 
@@ -180,7 +188,7 @@ fn ward_at_normal_incidence() {
         ] {
             let f = model(name, &format!(r#"{{"rho_d": 0, "rho_s": 1, "alpha": {alpha}}}"#));
             let e = quadrature(&*f, 1.0, 1e-11);
-            near(&format!("{name} alpha {alpha}"), e.value[0], expected, 2e-11);
+            near(&format!("{name} alpha {alpha}"), e.value[0], expected, INTEGRAL_11_TWICE);
         }
     }
 }
@@ -199,6 +207,6 @@ fn lafortune_lobe_is_a_scaled_phong_lobe() {
         let expected = 0.7 * libm::pow(length, n) * 2.0 * PI / (n + 2.0)
             * quadrature(&*phong, c[2] * mu / length, 1e-12).value[0];
         let e = quadrature(&*lobe, mu, 1e-12);
-        near(&format!("mu {mu}"), e.value[0], expected, 1e-11);
+        near(&format!("mu {mu}"), e.value[0], expected, INTEGRAL_11);
     }
 }

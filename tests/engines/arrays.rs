@@ -3,6 +3,9 @@
 use crate::common::shared;
 use crate::engines::compare::{Case, HALF, agree, ltc, not_worse, size, truth};
 use crate::engines::support::{Texture, bake, npy, picture, plan};
+use crate::tolerance::{
+    LOOKED_UP, NARROW_LIGHT_WEIGHT, NOTHING_LEANS, QUOTED_DIGITS_FOUR, QUOTED_DIGITS_THREE,
+};
 use brdfbake::encode::read;
 use brdfbake::recipe::parse;
 
@@ -32,9 +35,12 @@ fn bevy_area_lights() {
     let [matrices, magnitudes] = [layer(&all, 0), layer(&all, 1)];
     // rough and along the normal nothing leans, whatever the fit
     let [m11, m31, m13, m33] = matrices.texel(63, 0).try_into().unwrap();
-    assert!(m11 > 0.5 && m33 > 0.5 && f64::abs(m31) < 1e-2 && f64::abs(m13) < 1e-2);
+    assert!(m11 > 0.5 && m33 > 0.5 && f64::abs(m31) < NOTHING_LEANS && f64::abs(m13) < NOTHING_LEANS);
     // smooth and along the normal: everything is reflected
-    assert!((magnitudes.texel(0, 0)[0] - 1.0).abs() < 1e-3 && magnitudes.texel(0, 0)[1].abs() < 1e-3);
+    assert!(
+        (magnitudes.texel(0, 0)[0] - 1.0).abs() < NARROW_LIGHT_WEIGHT
+            && magnitudes.texel(0, 0)[1].abs() < NARROW_LIGHT_WEIGHT
+    );
     let Some(dir) = shared() else { return };
     let values = npy(&dir.join("oracles/engines/bevy/ltc_half.npy"));
     let shipped = Texture::new(64, 128, 4, values);
@@ -69,14 +75,20 @@ fn ogre_next() {
         (0..n).map(|i| 2.0 * mid(i) * read(mid(i), r)[2] / f64::from(n)).sum::<f64>()
     };
     let told = [mean(0.0), mean(1.0)];
-    assert!((told[0] - 0.905).abs() < 3e-3 && (told[1] - 0.702).abs() < 4e-3, "{told:?}");
+    assert!(
+        (told[0] - 0.905).abs() < QUOTED_DIGITS_THREE && (told[1] - 0.702).abs() < QUOTED_DIGITS_FOUR,
+        "{told:?}"
+    );
     let bound = truth("dfg", &["dfg.scale", "dfg.bias"]);
     for (mu, r) in [(0.3, 0.4), (0.7, 0.2), (0.55, 0.9)] {
         // the rows are one texel too rough
         let r_held = r + 1.0 / 64.0;
         let exact = bound.baker.texel(&[mu, r_held * r_held], 1e-7).unwrap().value;
         let got = read(mu, r);
-        assert!((got[0] - exact[0]).abs() < 2e-3 && (got[1] - exact[1]).abs() < 2e-3, "{mu} {r}: {got:?}");
+        assert!(
+            (got[0] - exact[0]).abs() < LOOKED_UP && (got[1] - exact[1]).abs() < LOOKED_UP,
+            "{mu} {r}: {got:?}"
+        );
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::common::shared;
 use crate::engines::support::{Texture, bake, exact, npy, numbers, picture, plan};
+use crate::tolerance::{CYCLES_PRINTED, DRAWN, near};
 use brdfbake::grid::{Axis, Quantity, Texel};
 use brdfbake::plan::Plan;
 use brdfbake::recipe::engine;
@@ -294,13 +295,12 @@ fn sheen() {
     let babylon = npy(&dir.join("babylon/environmentFuzzBRDFBase64Texture_png8.npy"));
     for (x, y, c) in [(20, 1, 0), (20, 1, 1), (12, 30, 2), (31, 0, 0)] {
         let value = shipped.texel(x, y)[c];
-        assert!(
-            (cycles[(c * 32 + x) * 32 + y] - value).abs() < 6e-6,
-            "Cycles holds A, B, R, the view fastest"
-        );
+        near!(cycles[(c * 32 + x) * 32 + y], value, CYCLES_PRINTED, "Cycles holds A, B, R, the view fastest");
         let unit = [(value - 0.005) / 0.875, (value + 0.18) / 0.182, value / 0.75][c];
-        assert!(
-            (babylon[(y * 32 + x) * 3 + c] / 255.0 - unit).abs() < 2.5 / 255.0,
+        near!(
+            babylon[(y * 32 + x) * 3 + c] / 255.0,
+            unit,
+            2.5 / 255.0,
             "Babylon's rows are views, its codes up to 2.4 too high"
         );
     }
@@ -325,7 +325,7 @@ fn texels_of_sheen() {
                 _ => [a, b, reflectance],
             };
             for (c, (value, wanted)) in e.value.iter().zip(wanted).enumerate() {
-                assert!((value - wanted).abs() < 2e-3, "{id}, channel {c}: {:?}", e.value);
+                near!(*value, wanted, DRAWN, "{id}, channel {c}: {:?}", e.value);
             }
         }
     }

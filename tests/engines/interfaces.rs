@@ -2,6 +2,7 @@
 
 use crate::common::shared;
 use crate::engines::support::{bake, npy, numbers, plan};
+use crate::tolerance::{CYCLES_FLOAT_TABLE, CYCLES_SUM, DRAWN, DRAWN_FEW, near};
 use brdfbake::verify::reconstruction::Probe;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -34,8 +35,8 @@ fn differ(table: &str, shipped: &[f64], step: usize) -> f64 {
 fn cycles_glass() {
     let Some(dir) = shared() else { return };
     let shipped = |name: &str| npy(&dir.join(format!("oracles/engines/cycles/{name}.npy")));
-    assert!(differ("cycles-ggx-glass-E", &shipped("ggx_glass_E"), 13) < 1e-4);
-    assert!(differ("cycles-ggx-glass-Eavg", &shipped("ggx_glass_Eavg"), 31) < 1e-4);
+    assert!(differ("cycles-ggx-glass-E", &shipped("ggx_glass_E"), 13) < CYCLES_FLOAT_TABLE);
+    assert!(differ("cycles-ggx-glass-Eavg", &shipped("ggx_glass_Eavg"), 31) < CYCLES_FLOAT_TABLE);
 }
 
 #[test]
@@ -43,9 +44,9 @@ fn cycles_glass() {
 fn cycles_glass_whole() {
     let Some(dir) = shared() else { return };
     let shipped = npy(&dir.join("oracles/engines/cycles/ggx_glass_E.npy"));
-    assert!(differ("cycles-ggx-glass-E", &shipped, 1) < 1e-4);
+    assert!(differ("cycles-ggx-glass-E", &shipped, 1) < CYCLES_FLOAT_TABLE);
     let averages = npy(&dir.join("oracles/engines/cycles/ggx_glass_Eavg.npy"));
-    assert!(differ("cycles-ggx-glass-Eavg", &averages, 1) < 1e-4);
+    assert!(differ("cycles-ggx-glass-Eavg", &averages, 1) < CYCLES_FLOAT_TABLE);
     let plan = plan("cycles", |t| t == "cycles-ggx-glass-E");
     let probe = Probe::new(&plan.tables[0].bound, 1e-5, 1 << 16);
     let baked: Vec<f64> =
@@ -65,7 +66,7 @@ fn cycles_schlick_arrays_sum_to_what_is_known_of_the_shipped() {
         let values = texels("cycles", table, 0..4096);
         let got: f64 = values.iter().map(|(_, v)| v).sum();
         println!("{table}: {got}, shipped {sum}: {:.1e} a texel", (got - sum).abs() / 4096.0);
-        assert!((got - sum).abs() <= 1e-3 * 4096.0, "{table}: {got}, shipped {sum}");
+        near!(got, sum, CYCLES_SUM * 4096.0, "{table}: {got}, shipped {sum}");
     }
 }
 
@@ -78,7 +79,7 @@ fn cycles_glass_from_inside() {
     for ((r, m, z), (_, value)) in chosen.into_iter().zip(got) {
         let [r, m, z] = [r, m, z].map(|i| i as f64 / 15.0);
         let expected = 1.0 - genluts(m.max(1e-4), r, Some((1.0 - z * z) / (1.0 + z * z)));
-        assert!((value - expected).abs() < 3e-3, "({r}, {m}, {z}): {value}, sampled {expected}");
+        near!(value, expected, DRAWN_FEW, "({r}, {m}, {z}): {value}, sampled {expected}");
     }
 }
 
@@ -146,7 +147,7 @@ fn osl_headers_hold_what_genluts_samples() {
         let [mu, roughness] = [c, r].map(|i| f64::from(i) / 15.0);
         let expected = genluts(mu * mu, roughness, None);
         let got = values[usize::try_from(r * 16 + c).unwrap()];
-        assert!((got - expected).abs() < 2e-3, "({c}, {r}): {got}, sampled {expected}");
+        near!(got, expected, DRAWN, "({c}, {r}): {got}, sampled {expected}");
     }
 }
 
@@ -164,6 +165,6 @@ fn osl_interfaces_hold_what_genluts_samples() {
     for ((c, r, f), (_, value)) in chosen.into_iter().zip(got) {
         let [mu, roughness, t] = [c as f64 / 15.0, r as f64 / 15.0, f as f64 / 31.0];
         let expected = genluts(mu, roughness, Some(1.001 + 3.999 * t * t));
-        assert!((value - expected).abs() < 3e-3, "{table} ({c}, {r}, {f}): {value}, sampled {expected}");
+        near!(value, expected, DRAWN_FEW, "{table} ({c}, {r}, {f}): {value}, sampled {expected}");
     }
 }

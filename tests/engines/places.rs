@@ -4,6 +4,7 @@
 //! or a channel of another place, they have other values.
 
 use crate::engines::support::{npy, numbers, picture, plan};
+use crate::tolerance::near;
 use brdfbake::encode::{self, EncodeInput, FileOption, Label, quantise_table};
 use brdfbake::grid::Table;
 use brdfbake::plan::PlannedTable;
@@ -193,12 +194,7 @@ fn files_hold_a_texel_in_its_place() {
                 let got = span(c)[0] + span(c)[1] * found(at, c);
                 // half a step of 8 bits over a range, with the 2.2 of RGBD
                 let slack = 6e-3 * span(c)[1];
-                assert!(
-                    (got - wanted(c)).abs() <= slack,
-                    "{} {}, channel {c}: {got}",
-                    engine.id,
-                    planned.name()
-                );
+                near!(got, wanted(c), slack, "{} {}, channel {c}: {got}", engine.id, planned.name());
                 let next = found((at + 1) % spec.grid.len(), c);
                 assert!(next.abs() < 1e-6, "{} {}, channel {c}: {next} beside it", engine.id, planned.name());
             }

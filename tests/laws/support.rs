@@ -21,7 +21,11 @@ impl Pair {
 
     /// Bound on the default axes, each no longer than `longest`.
     pub(crate) fn bind(&self, longest: usize) -> Bound {
-        let short = |a: Axis| Axis { len: a.len.min(longest), ..a };
+        self.bind_to(|a| Axis { len: a.len.min(longest), ..a })
+    }
+
+    /// Bound on what `change` makes of the default axes.
+    pub(crate) fn bind_to(&self, change: impl Fn(Axis) -> Axis) -> Bound {
         // a light that crosses wants a model that lets it
         let channels =
             self.kind.layouts.iter().filter(|l| Some(l.id) == self.layout).flat_map(|l| l.channels);
@@ -36,7 +40,7 @@ impl Pair {
             ..Request::default()
         };
         let bind = |request: &Request| request.bind().unwrap_or_else(|e| panic!("{}: {e}", self.name()));
-        let axes = bind(&request).spec.grid.axes().iter().cloned().map(short).collect();
+        let axes = bind(&request).spec.grid.axes().iter().cloned().map(change).collect();
         bind(&Request { axes: Some(axes), ..request })
     }
 }

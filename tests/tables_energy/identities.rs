@@ -2,6 +2,10 @@
 
 use crate::common::{axis, bake};
 use crate::tables_energy::support::{table, texel};
+use crate::tolerance::{
+    DIGIT_LOST, INTEGRAL_5, INTEGRAL_5_TWICE, INTEGRAL_6_TWICE, INTEGRAL_7, INTEGRAL_8, INTEGRAL_9,
+    INTEGRAL_10, INTEGRAL_11, near,
+};
 use brdfbake::grid::{Axis, Texel};
 use brdfbake::integrate::gauss;
 use brdfbake::models::Functional;
@@ -17,13 +21,13 @@ fn the_f82_channel_splits_the_tinted_fresnel_factor_exactly() {
         2.0 * (2.0 * u * u - 1.0) * libm::pow(1.0 - u, 6.0) * (823_543.0 / 46_656.0)
     });
     let f82 = table("dfg", "ggx", "{}", &["dfg.f82"], &["mu", "alpha"]);
-    assert!((texel(&f82, &[1.0, 1.0], 1e-12).0 - expected).abs() < 1e-11, "{expected}");
+    near!(texel(&f82, &[1.0, 1.0], 1e-12).0, expected, INTEGRAL_11, "{expected}");
     // a mirror
     let mirror = texel(&f82, &[1.0 / 7.0, 0.0], 1e-12).0;
-    assert!((mirror - 1.0).abs() < 1e-13, "{mirror}");
+    near!(mirror, 1.0, DIGIT_LOST, "{mirror}");
     let sixteen = table("dfg", "ggx", "{}", &["dfg.f82-x16"], &["mu", "alpha"]);
     let scaled = 16.0 * 46_656.0 / 823_543.0 * texel(&f82, &[0.3, 0.2], 1e-10).0;
-    assert!((texel(&sixteen, &[0.3, 0.2], 1e-10).0 - scaled).abs() < 1e-9);
+    near!(texel(&sixteen, &[0.3, 0.2], 1e-10).0, scaled, INTEGRAL_9);
     // the formula in the layout: the albedo of a mirror of colour f0 and tint t at every angle
     let split = table("dfg", "ggx", "{}", &["dfg.scale", "dfg.bias", "dfg.f82"], &["mu", "alpha"]);
     for (f0, tint) in [(0.9, 0.8), (0.6, 0.5), (0.95, 1.0)] {
@@ -32,7 +36,7 @@ fn the_f82_channel_splits_the_tinted_fresnel_factor_exactly() {
             let dip = (f0 + (1.0 - f0) * libm::pow(6.0 / 7.0, 5.0)) * (1.0 - tint);
             let got = f0 * e[0] + e[1] - dip * e[2];
             let expected = schlick::f82_tint_unclamped(f0, tint, mu);
-            assert!((got - expected).abs() < 1e-13, "{f0} {tint} {mu}: {got} {expected}");
+            near!(got, expected, DIGIT_LOST, "{f0} {tint} {mu}: {got} {expected}");
         }
     }
 }
@@ -58,12 +62,12 @@ fn a_dielectric_albedo_is_made_of_white_albedo_and_schlick_part() {
     let (white, exact) = (9.158_124_302_497_503_8e-1, 3.704_866_317_781_678_6e-2);
     let at = [1.0, 0.25, 1.5];
     let got = 0.04 * white + 0.96 * texel(&part, &at, 1e-12).0;
-    assert!((got - exact).abs() < 1e-11, "{got}");
+    near!(got, exact, INTEGRAL_11, "{got}");
     let got = white * (0.04 + 0.96 * texel(&mean, &at, 1e-12).0);
-    assert!((got - exact).abs() < 1e-11, "{got}");
+    near!(got, exact, INTEGRAL_11, "{got}");
     // a power of the exponent axis: 0 is a constant factor
     let power = table("generalised-schlick", "ggx", "{}", &["schlick.s"], &["mu", "alpha", "exponent"]);
-    assert!((texel(&power, &[0.4, 0.3, 0.0], 1e-9).0 - 1.0).abs() < 1e-9);
+    near!(texel(&power, &[0.4, 0.3, 0.0], 1e-9).0, 1.0, INTEGRAL_9);
     // visible normals at alpha = 1, normal incidence: D cos dwm = 2 u du, of which u > 1 / sqrt 2 leaves upwards
     let visible =
         table("generalised-schlick", "ggx", "{}", &["schlick.s-visible"], &["mu", "alpha", "exponent"]);
@@ -71,7 +75,7 @@ fn a_dielectric_albedo_is_made_of_white_albedo_and_schlick_part() {
         let expected = gauss::rule(40)
             .integrate(std::f64::consts::FRAC_1_SQRT_2, 1.0, |u| 2.0 * u * libm::pow(1.0 - u, e));
         let got = texel(&visible, &[1.0, 1.0, e], 1e-9).0;
-        assert!((got - expected).abs() < 1e-8, "exponent {e}: {got} {expected}");
+        near!(got, expected, INTEGRAL_8, "exponent {e}: {got} {expected}");
     }
 }
 
@@ -82,8 +86,8 @@ fn flux_through_an_interface_is_the_same_both_ways() {
     for (alpha, eta) in [(0.5, 1.5), (0.2, 1.33), (1.0, 2.2)] {
         let e = bound.baker.texel(&[alpha, eta], 1e-5).unwrap();
         let [t, t_in, r, r_in, all, all_in, ..] = e.value;
-        assert!((t - eta * eta * t_in).abs() <= 2e-5 * (1.0 + eta * eta), "{alpha} {eta}: {t} {t_in}");
-        assert!((r + t - all).abs() < 1e-5 && (r_in + t_in - all_in).abs() < 1e-5);
+        near!(t, eta * eta * t_in, INTEGRAL_5_TWICE * (1.0 + eta * eta), "{alpha} {eta}: {t} {t_in}");
+        assert!((r + t - all).abs() < INTEGRAL_5 && (r_in + t_in - all_in).abs() < INTEGRAL_5);
         assert!(all < 1.0 && all_in < 1.0);
     }
 }
@@ -96,12 +100,14 @@ fn shares_of_a_compensated_interface_are_reciprocal() {
         let e = bound.baker.texel(&[0.5, alpha, eta], 1e-5).unwrap();
         let [a, a_in, m, m_in, ..] = e.value;
         let (forth, back) = ((1.0 - a) * m, eta * eta * (1.0 - a_in) * m_in);
-        assert!((forth - back).abs() < 1e-5, "{alpha} {eta}: {forth} {back}");
+        near!(forth, back, INTEGRAL_5, "{alpha} {eta}: {forth} {back}");
         assert!(a >= fresnel::dielectric_average(eta) - 1e-6 && a <= 1.0 && (0.0..=1.0).contains(&a_in));
         // the means are those of the average table
         let avg = table("average-albedo", "ggx-glass", "{}", &["e-avg", "e-avg.inside"], &["alpha", "eta"]);
         let avg = avg.baker.texel(&[alpha, eta], 1e-5).unwrap().value;
-        assert!((m - (1.0 - avg[0])).abs() < 2e-5 && (m_in - (1.0 - avg[1])).abs() < 2e-5);
+        assert!(
+            (m - (1.0 - avg[0])).abs() < INTEGRAL_5_TWICE && (m_in - (1.0 - avg[1])).abs() < INTEGRAL_5_TWICE
+        );
     }
 }
 
@@ -113,9 +119,9 @@ fn the_lobe_gives_back_what_is_missing() {
     let flux = gauss::rule(40).integrate(0.0, 1.0, |x| 2.0 * PI * lobe(x * x) * x * x * 2.0 * x);
     for mu in [0.1, 0.5, 1.0] {
         let missing = mu * libm::log1p(1.0 / mu);
-        assert!((lobe(mu) * flux - missing).abs() < 1e-7, "{mu}: {} {missing}", lobe(mu) * flux);
+        near!(lobe(mu) * flux, missing, INTEGRAL_7, "{mu}: {} {missing}", lobe(mu) * flux);
         let turquin = bound.baker.texel(&[mu, 1.0], 1e-10).unwrap().value[1];
-        assert!((turquin - missing / (1.0 - missing)).abs() < 1e-9);
+        near!(turquin, missing / (1.0 - missing), INTEGRAL_9);
     }
     // a mirror misses nothing
     assert_eq!(bound.baker.texel(&[0.5, 0.0], 1e-6).unwrap().value[..2], [0.0, 0.0]);
@@ -130,7 +136,7 @@ fn near_mirrors_lose_next_to_nothing_at_normal_incidence() {
             for tolerance in [2.4e-4, 1e-7, 1e-10] {
                 let (e, error) = texel(&bound, &[mu, alpha], tolerance);
                 let lost = 2.0 * alpha * alpha * libm::log(1.0 / alpha);
-                assert!((1.0 - e).abs() <= error + lost + 1e-13, "alpha {alpha}, mu {mu}: {e} +- {error:e}");
+                near!(1.0, e, error + lost + DIGIT_LOST, "alpha {alpha}, mu {mu}: {e} +- {error:e}");
             }
         }
     }
@@ -167,11 +173,11 @@ fn four_axes_of_an_anisotropic_albedo_are_symmetric_and_obey_the_laws() {
                 for y in 0..3 {
                     // turning by a quarter swaps the widths
                     let (a, b) = (at(mu, phi, x, y), at(mu, 2 - phi, y, x));
-                    assert!((a - b).abs() <= 2e-5, "{mu} {phi} {x} {y}: {a} {b}");
+                    near!(a, b, INTEGRAL_5_TWICE, "{mu} {phi} {x} {y}: {a} {b}");
                 }
                 let alpha = 0.2 + 0.2 * x as f64;
                 let e = texel(&isotropic, &[(mu as f64 + 0.5) / 3.0, alpha], 1e-8).0;
-                assert!((at(mu, phi, x, x) - e).abs() <= 1e-5);
+                near!(at(mu, phi, x, x), e, INTEGRAL_5);
             }
         }
     }
@@ -217,16 +223,16 @@ fn clear_coats_at_a_fixed_f0_and_the_scaling_below_a_sheen() {
     let coat = table("albedo", "disney-clearcoat", "{}", &["e"], &["mu", "gloss"]);
     for (mu, gloss, expected) in DISNEY_COAT {
         let (got, _) = texel(&coat, &[mu, gloss], 1e-8);
-        assert!((got - expected).abs() < 2e-6, "mu {mu}, gloss {gloss}: {got} {expected}");
+        near!(got, expected, INTEGRAL_6_TWICE, "mu {mu}, gloss {gloss}: {got} {expected}");
     }
     // glTF's: F0 A + B with A and B of the reference integrals at theta = 0.5, alpha = 0.5
     let coat = table("albedo", "ggx", r#"{"f0": 0.04}"#, &["e"], &["mu", "alpha"]);
     let expected = 0.04 * 6.828_272_703_358_252_2e-1 + 5.069_087_395_918_239_3e-4;
-    assert!((texel(&coat, &[libm::cos(0.5), 0.5], 1e-10).0 - expected).abs() < 1e-10);
+    near!(texel(&coat, &[libm::cos(0.5), 0.5], 1e-10).0, expected, INTEGRAL_10);
     // E_charlie_conty_kulla_fitted_lambda at theta = 0.5, r = 0.5
     let scaling = table("sheen-scaling", "", r#"{"sheen": 0.5}"#, &["sheen.scaling"], &["mu", "alpha"]);
     let expected = 1.0 - 0.5 * 1.251_813_172_483_886_2e-1;
-    assert!((texel(&scaling, &[libm::cos(0.5), 0.5], 1e-10).0 - expected).abs() < 1e-9);
+    near!(texel(&scaling, &[libm::cos(0.5), 0.5], 1e-10).0, expected, INTEGRAL_9);
 }
 
 #[test]

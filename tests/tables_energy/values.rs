@@ -1,6 +1,7 @@
 //! Single texels against reference integrals (`values/integrals.csv`) and excerpts of other programs (`values/energy.csv`).
 
 use crate::tables_energy::support::{table, texel};
+use crate::tolerance::{INTEGRAL_9_TWICE, INTEGRAL_12};
 use serde_json::Value as Json;
 use std::collections::BTreeMap;
 
@@ -106,12 +107,12 @@ fn reference_integrals_are_met_through_tables() {
             let known = libm::pow(10.0, f64::from(1 - digits)) * expected.abs();
             let off = (got - expected).abs();
             assert!(
-                off <= error + known + 1e-12,
+                off <= error + known + INTEGRAL_12,
                 "{name} {kind} {}: off by {off:e}, estimate {error:e}",
                 &r[1]
             );
             // total reflection and the corner of a grazing view limit what the rules reach
-            assert!(error <= 2e-9, "{name} {kind} {}: estimate {error:e}", &r[1]);
+            assert!(error <= INTEGRAL_9_TWICE, "{name} {kind} {}: estimate {error:e}", &r[1]);
             largest = largest.max(off);
             count += 1;
         }

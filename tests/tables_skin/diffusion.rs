@@ -2,6 +2,10 @@
 
 use super::helpers::{close, rows, table, texel};
 use crate::common::{bake, request};
+use crate::tolerance::{
+    DIGIT_LOST, DIGITS_LOST, FEW_ROUNDINGS, FIT_SAMPLED_PROFILE, INTEGRAL_9, INTEGRAL_10, MANY_ROUNDINGS,
+    TEN_ROUNDINGS,
+};
 use brdfbake::grid::{Axis, Quantity, Texel};
 use brdfbake::integrate::line;
 use brdfbake::tables::gaussian_fit;
@@ -26,7 +30,7 @@ fn profiles_agree_with_high_precision_values() {
             &row.name,
             texel(&bound, &[row.num("r_mm")], 1e-9).value[row.channel()],
             row.value,
-            1e-13 * row.value,
+            DIGIT_LOST * row.value,
         );
     }
     for row in rows("points_skin", "burley2015_R") {
@@ -35,7 +39,7 @@ fn profiles_agree_with_high_precision_values() {
             row.params["fit"], row.params["A"], row.params["l"]
         );
         let bound = table("diffusion-profile", "area", &params, &[("radius", 0.0, FAR)]);
-        close(&row.name, texel(&bound, &[row.num("r")], 1e-9).value[1], row.value, 1e-13 * row.value);
+        close(&row.name, texel(&bound, &[row.num("r")], 1e-9).value[1], row.value, DIGIT_LOST * row.value);
     }
     for row in rows("points_skin", "dipole_Rd") {
         let params = format!(
@@ -43,7 +47,7 @@ fn profiles_agree_with_high_precision_values() {
             row.params["sigma_a"], row.params["sigma_s_prime"], row.params["eta"]
         );
         let bound = table("diffusion-profile", "area", &params, &[("radius", 0.0, FAR)]);
-        close(&row.name, texel(&bound, &[row.num("r")], 1e-9).value[2], row.value, 1e-13 * row.value);
+        close(&row.name, texel(&bound, &[row.num("r")], 1e-9).value[2], row.value, DIGIT_LOST * row.value);
     }
 }
 
@@ -55,7 +59,7 @@ fn the_part_inside_agrees_with_high_precision_values_and_with_quadrature() {
             row.params["A"], row.params["l"]
         );
         let bound = table("diffusion-profile", "inside", &params, &[("radius", 0.0, FAR)]);
-        close(&row.name, texel(&bound, &[row.num("r")], 1e-9).value[0], row.value, 1e-14);
+        close(&row.name, texel(&bound, &[row.num("r")], 1e-9).value[0], row.value, MANY_ROUNDINGS);
     }
     // the closed cumulative forms against the adaptive rule over the rings
     for params in ["{}", BURLEY, DIPOLE, GREY, r#"{"profile": "dipole", "sigma_a_r": 0, "eta": 1}"#] {
@@ -68,7 +72,7 @@ fn the_part_inside_agrees_with_high_precision_values_and_with_quadrature() {
                 out[..3].copy_from_slice(&texel(&ring, &[s], 1e-9).value[..3]);
             });
             for c in 0..3 {
-                close(params, f.value[c], sum.value[c], 1e-12);
+                close(params, f.value[c], sum.value[c], DIGITS_LOST);
             }
         }
     }
@@ -82,7 +86,7 @@ fn a_dipole_integrates_to_its_total() {
             row.params["sigma_a"], row.params["sigma_s_prime"], row.params["eta"]
         );
         let bound = table("diffusion-profile", "inside", &params, &[("radius", 0.0, FAR)]);
-        close(&row.name, texel(&bound, &[1e7], 1e-9).value[0], row.value, 1e-13);
+        close(&row.name, texel(&bound, &[1e7], 1e-9).value[0], row.value, DIGIT_LOST);
     }
     // skin1 of Jensen and others 2001, Fig. 5: the coefficients of the defaults give the diffuse reflectance printed beside them
     let bound =
@@ -103,7 +107,7 @@ fn kernels_are_line_integrals() {
     let expected = (k0_1 + k0_third) / (4.0 * std::f64::consts::PI);
     for tolerance in [1e-3, 1e-6, 1e-10] {
         let e = texel(&line_table, &[1.0], tolerance);
-        close("K0", e.value[0], expected, tolerance.min(e.error[0] + 1e-15));
+        close("K0", e.value[0], expected, tolerance.min(e.error[0] + FEW_ROUNDINGS));
     }
     // the cumulative kernel is the integral of the line, Gaussians are Gaussians in both forms
     for params in ["{}", BURLEY, DIPOLE] {
@@ -115,7 +119,7 @@ fn kernels_are_line_integrals() {
             });
             let (low, high) = (texel(&cumulative, &[a], 1e-11), texel(&cumulative, &[b], 1e-11));
             for c in 0..3 {
-                close(params, high.value[c] - low.value[c], 2.0 * sum.value[c], 1e-9);
+                close(params, high.value[c] - low.value[c], 2.0 * sum.value[c], INTEGRAL_9);
             }
         }
         close(params, texel(&cumulative, &[0.0], 1e-11).value[0], 0.0, 0.0);
@@ -130,7 +134,7 @@ fn transmittances_agree_with_high_precision_values() {
         let bound = table("skin-transmittance", layout, "{}", &[("thickness", 0.0, FAR)]);
         for row in rows("points_skin", name) {
             let got = texel(&bound, &[row.num("d_mm")], 1e-9).value[row.channel()];
-            close(&row.name, got, row.value, 1e-13 * row.value);
+            close(&row.name, got, row.value, DIGIT_LOST * row.value);
         }
     }
     // any profile: the integral over the far side
@@ -144,7 +148,7 @@ fn transmittances_agree_with_high_precision_values() {
             }
         });
         for c in 0..3 {
-            close("dipole", texel(&bound, &[d], 1e-9).value[c], sum.value[c], 1e-10);
+            close("dipole", texel(&bound, &[d], 1e-9).value[c], sum.value[c], INTEGRAL_10);
         }
     }
 }
@@ -154,7 +158,7 @@ fn sampled_radii_invert_the_part_inside() {
     for row in rows("points_skin", "burley2015_cdf_inverse") {
         let params = r#"{"profile": "burley", "fit": "searchlight", "albedo_r": 0.8, "length_r": 1.05}"#;
         let bound = table("diffusion-sampling", "radius", params, &[("u", 0.0, 1.0)]);
-        close(&row.name, texel(&bound, &[row.num("xi")], 1e-9).value[0], row.value, 1e-12 * row.value);
+        close(&row.name, texel(&bound, &[row.num("xi")], 1e-9).value[0], row.value, DIGITS_LOST * row.value);
     }
     for params in ["{}", BURLEY, DIPOLE, GREY] {
         let bound = table("diffusion-sampling", "radius", params, &[("u", 0.0, 1.0)]);
@@ -162,8 +166,13 @@ fn sampled_radii_invert_the_part_inside() {
         for u in [0.0, 1e-9, 1e-3, 0.3, 0.5, 0.9, 0.999, 1.0 - 1e-9] {
             let e = texel(&bound, &[u], 1e-9);
             for c in 0..3 {
-                close(&format!("{params} {u}"), texel(&inside, &[e.value[c]], 1e-9).value[c], u, 2e-15);
-                assert!(e.error[c] <= 1e-9 * (1.0 + e.value[c]), "{params} {u}: {:e}", e.error[c]);
+                close(
+                    &format!("{params} {u}"),
+                    texel(&inside, &[e.value[c]], 1e-9).value[c],
+                    u,
+                    TEN_ROUNDINGS,
+                );
+                assert!(e.error[c] <= INTEGRAL_9 * (1.0 + e.value[c]), "{params} {u}: {:e}", e.error[c]);
             }
         }
         assert!(texel(&bound, &[1.0], 1e-9).value[0].is_finite());
@@ -184,12 +193,12 @@ fn a_sum_of_gaussians_is_fitted_by_itself() {
     let fit = gaussian_fit::fit(&profile(GREY), 2);
     let expected = [(0.25, [2.0 / 3.0, 0.5, 0.25]), (4.0, [1.0 / 3.0, 0.5, 0.75])];
     for ((v, w), (ev, ew)) in fit.lobes.iter().zip(expected) {
-        close("variance", *v, ev, 1e-4 * ev);
+        close("variance", *v, ev, FIT_SAMPLED_PROFILE * ev);
         for (w, e) in w.iter().zip(ew) {
-            close("weight", *w, e, 1e-4);
+            close("weight", *w, e, FIT_SAMPLED_PROFILE);
         }
     }
-    assert!(fit.residual.iter().all(|r| *r < 1e-4), "{:?}", fit.residual);
+    assert!(fit.residual.iter().all(|r| *r < FIT_SAMPLED_PROFILE), "{:?}", fit.residual);
 }
 
 #[test]
@@ -203,7 +212,7 @@ fn fits_improve_with_their_number_and_keep_the_energy() {
             let fit = gaussian_fit::fit(&profile, count);
             for c in 0..3 {
                 let sum: f64 = fit.lobes.iter().map(|l| l.1[c]).sum();
-                close(params, sum, 1.0, 1e-12);
+                close(params, sum, 1.0, DIGITS_LOST);
                 assert!(fit.lobes.iter().all(|l| l.1[c] >= 0.0));
             }
             let residual: f64 = fit.residual.iter().map(|r| r * r).sum::<f64>().sqrt();

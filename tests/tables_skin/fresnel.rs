@@ -2,6 +2,7 @@
 
 use super::helpers::{close, rows, table, texel};
 use crate::common::{bake, request};
+use crate::tolerance::{DIGIT_LOST, DIGITS_LOST, FEW_ROUNDINGS, MANY_ROUNDINGS};
 use brdfbake::grid::{Axis, Quantity, Texel};
 use brdfbake::verify;
 
@@ -15,8 +16,8 @@ fn conductors_agree_with_high_precision_values() {
                 format!(r#"{{"metal": "index", "n": {}, "k": {}}}"#, row.params["n"], row.params["k"]);
             let bound = table("fresnel-conductor", "polarised", &params, &[MU]);
             let e = texel(&bound, &[libm::cos(row.angle)], 1e-9);
-            close(&row.name, e.value[channel], row.value, 1e-13);
-            close(&row.name, e.value[channel + 2], row.value, 1e-13);
+            close(&row.name, e.value[channel], row.value, DIGIT_LOST);
+            close(&row.name, e.value[channel + 2], row.value, DIGIT_LOST);
         }
     }
     // n and k on axes
@@ -24,7 +25,7 @@ fn conductors_agree_with_high_precision_values() {
     let bound = table("fresnel-conductor", "rgb", r#"{"metal": "index"}"#, &axes);
     for row in rows("points_fresnel", "fresnel_conductor_unpolarised") {
         let at = [libm::cos(row.angle), row.num("n"), row.num("k")];
-        close(&row.name, texel(&bound, &at, 1e-9).value[1], row.value, 1e-13);
+        close(&row.name, texel(&bound, &at, 1e-9).value[1], row.value, DIGIT_LOST);
     }
 }
 
@@ -108,13 +109,18 @@ fn schlick_and_its_variants_agree_with_high_precision_values() {
                 .collect();
             let params = format!(r#"{{"variant": "{variant}", {}}}"#, given.join(", "));
             let bound = table("fresnel-schlick", "unclamped", &params, &[MU]);
-            close(&row.name, texel(&bound, &[libm::cos(row.angle)], 1e-9).value[0], row.value, 1e-14);
+            close(
+                &row.name,
+                texel(&bound, &[libm::cos(row.angle)], 1e-9).value[0],
+                row.value,
+                MANY_ROUNDINGS,
+            );
         }
     }
     // from the denser side: no light passes beyond the critical angle, and F0 is that of the other side
     let bound = table("fresnel-schlick", "clamped", r#"{"variant": "dielectric", "eta": 0.5}"#, &[MU]);
     close("total", texel(&bound, &[0.8], 1e-9).value[0], 1.0, 0.0);
-    close("normal", texel(&bound, &[1.0], 1e-9).value[0], 1.0 / 9.0, 1e-15);
+    close("normal", texel(&bound, &[1.0], 1e-9).value[0], 1.0 / 9.0, FEW_ROUNDINGS);
     // negative values are cut where renderers cut them
     let dark = r#"{"variant": "f82-tint", "f0": 0, "tint": 0}"#;
     let at = [0.261];
@@ -133,17 +139,17 @@ fn masking_and_visibility_are_closed_forms_at_width_one() {
     let g1 = table("masking", "g1", "{}", &[MU, ("alpha", 0.0, 1.0)]);
     let axes = [MU, ("mu_i", 0.0, 1.0)];
     for mu in [1e-6, 0.01, 0.3, 0.9, 1.0] {
-        close("G1", texel(&g1, &[mu, 1.0], 1e-9).value[0], 2.0 * mu / (1.0 + mu), 1e-15);
+        close("G1", texel(&g1, &[mu, 1.0], 1e-9).value[0], 2.0 * mu / (1.0 + mu), FEW_ROUNDINGS);
         for mu_i in [0.02, 0.5, 1.0] {
             let value = |layout: &str, masking: &str| {
                 let params = format!(r#"{{"masking": "{masking}", "alpha": 1}}"#);
                 texel(&table("visibility", layout, &params, &axes), &[mu, mu_i], 1e-9).value[0]
             };
-            close("V", value("visibility", "correlated"), 0.5 / (mu + mu_i), 1e-13 / mu_i);
-            close("G2", value("g2", "correlated"), 2.0 * mu * mu_i / (mu + mu_i), 1e-14);
+            close("V", value("visibility", "correlated"), 0.5 / (mu + mu_i), DIGIT_LOST / mu_i);
+            close("G2", value("g2", "correlated"), 2.0 * mu * mu_i / (mu + mu_i), MANY_ROUNDINGS);
             let product = 4.0 * mu * mu_i / ((1.0 + mu) * (1.0 + mu_i));
-            close("G1 G1", value("g2", "separable"), product, 1e-14);
-            close("V sep", value("visibility", "separable"), product / (4.0 * mu * mu_i), 1e-13);
+            close("G1 G1", value("g2", "separable"), product, MANY_ROUNDINGS);
+            close("V sep", value("visibility", "separable"), product / (4.0 * mu * mu_i), DIGIT_LOST);
         }
     }
     // Lambda of Beckmann against high-precision values of equal widths
@@ -152,11 +158,11 @@ fn masking_and_visibility_are_closed_forms_at_width_one() {
     {
         let bound = table("masking", "g1", r#"{"distribution": "beckmann"}"#, &[MU, ("alpha", 0.0, 2.0)]);
         let got = texel(&bound, &[libm::cos(row.angle), row.num("alpha_x")], 1e-9).value[0];
-        close(&row.name, got, 1.0 / (1.0 + row.value), 1e-12);
+        close(&row.name, got, 1.0 / (1.0 + row.value), DIGITS_LOST);
     }
     // Karis: k = alpha/2
     let karis = table("masking", "g1", r#"{"distribution": "schlick-ibl"}"#, &[MU, ("alpha", 0.0, 1.0)]);
-    close("karis", texel(&karis, &[0.5, 0.5], 1e-9).value[0], 0.5 / (0.5 * 0.75 + 0.25), 1e-15);
+    close("karis", texel(&karis, &[0.5, 0.5], 1e-9).value[0], 0.5 / (0.5 * 0.75 + 0.25), FEW_ROUNDINGS);
 }
 
 #[test]

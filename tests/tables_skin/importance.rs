@@ -1,6 +1,9 @@
 //! Sampled directions, against closed inverses and against the chart's albedo; the piecewise density.
 
 use super::helpers::close;
+use crate::tolerance::{
+    DIGIT_LOST, DIGITS_LOST, DRAWN_FEW, FEW_ROUNDINGS, INTEGRAL_7_TWICE, INTEGRAL_9, MANY_ROUNDINGS, near,
+};
 use brdfbake::grid::{Axis, Quantity, Texel};
 use brdfbake::integrate::density::Density;
 use brdfbake::integrate::{Estimate, View};
@@ -33,10 +36,10 @@ fn texel(bound: &Bound, at: &[f64], tolerance: f64) -> Estimate {
 fn a_piecewise_density_is_inverted() {
     // 3 x^2 on (0, 2), with a break: quantile 2 u^(1/3)
     let d = Density::new(&[0.0, 0.7, 2.0], 1e-12, &mut |x| (3.0 * x * x, 0.0, 1));
-    close("total", d.total, 8.0, 1e-13);
+    close("total", d.total, 8.0, DIGIT_LOST);
     for u in [1e-9, 0.01, 0.3, 0.9, 1.0] {
         let (x, error) = d.quantile(u);
-        close("cube root", x, 2.0 * libm::cbrt(u), 1e-12 + error);
+        close("cube root", x, 2.0 * libm::cbrt(u), DIGITS_LOST + error);
     }
     // a peak that needs halving: Cauchy, width 1e-3
     let w = 1e-3;
@@ -44,10 +47,10 @@ fn a_piecewise_density_is_inverted() {
     for tolerance in [1e-3, 1e-6, 1e-10] {
         let d = Density::new(&[0.0, 1.0], tolerance / w, &mut |x| (1.0 / (x * x + w * w), 0.0, 1));
         close("peak", d.total * w, end, tolerance);
-        assert!((d.total * w - end).abs() <= d.error * w + 1e-15);
+        near!(d.total * w, end, d.error * w + FEW_ROUNDINGS);
         for u in [0.1, 0.5, 0.99] {
             let (x, error) = d.quantile(u);
-            close("peak", x, w * libm::tan(u * end), error + 1e-14);
+            close("peak", x, w * libm::tan(u * end), error + MANY_ROUNDINGS);
         }
     }
 }
@@ -58,15 +61,15 @@ fn a_matte_surface_is_sampled_by_the_cosine() {
     for (u, v) in [(0.1, 0.2), (0.5, 0.5), (0.9, 0.99)] {
         for tolerance in [1e-3, 1e-6, 1e-9] {
             let e = texel(&bound, &[u, v, 0.6], tolerance);
-            close("mu_i", e.value[0], (1.0f64 - u).sqrt(), tolerance.min(e.error[0] + 1e-13));
-            close("phi", e.value[1], TAU * v, tolerance.min(e.error[1] + 1e-13));
+            close("mu_i", e.value[0], (1.0f64 - u).sqrt(), tolerance.min(e.error[0] + DIGIT_LOST));
+            close("phi", e.value[1], TAU * v, tolerance.min(e.error[1] + DIGIT_LOST));
         }
     }
     let bound = table("lambert", "{}", "direction-pdf", &[]);
     let e = texel(&bound, &[0.3, 0.1, 0.6], 1e-9);
-    close("pdf", e.value[3], 0.7f64.sqrt() / PI, 1e-9);
-    close("x", e.value[0], 0.3f64.sqrt() * libm::cos(TAU * 0.1), 1e-9);
-    close("y", e.value[1], 0.3f64.sqrt() * libm::sin(TAU * 0.1), 1e-9);
+    close("pdf", e.value[3], 0.7f64.sqrt() / PI, INTEGRAL_9);
+    close("x", e.value[0], 0.3f64.sqrt() * libm::cos(TAU * 0.1), INTEGRAL_9);
+    close("y", e.value[1], 0.3f64.sqrt() * libm::sin(TAU * 0.1), INTEGRAL_9);
 }
 
 #[test]
@@ -82,7 +85,7 @@ fn a_cosine_lobe_seen_from_above_is_sampled_by_its_power() {
                     &format!("{n} {u} {tolerance:e}"),
                     e.value[0],
                     expected,
-                    tolerance.min(e.error[0] + 1e-13),
+                    tolerance.min(e.error[0] + DIGIT_LOST),
                 );
                 close("phi", e.value[1], 0.25 * TAU, tolerance);
             }
@@ -120,7 +123,7 @@ fn marginals_add_up_to_the_albedo() {
                 "{id} {params} {mu}: {error:e} {:e}",
                 marginal.error
             );
-            assert!(error < 2e-7, "{id} {params} {mu}: {error:e}");
+            assert!(error < INTEGRAL_7_TWICE, "{id} {params} {mu}: {error:e}");
         }
     }
 }
@@ -159,7 +162,7 @@ fn samples_have_the_mean_of_the_model() {
     }
     let expected = sum / total;
     for (c, e) in expected.to_array().into_iter().enumerate() {
-        close("mean", mean[c], e, 3e-3);
+        close("mean", mean[c], e, DRAWN_FEW);
     }
 }
 

@@ -1,5 +1,6 @@
 //! The adaptive rule: exactness, honesty, kinks.
 
+use crate::tolerance::{DIGIT_LOST, DIGITS_LOST, INTEGRAL_10, MANY_ROUNDINGS, TWO_ULPS, near};
 use brdfbake::integrate::line;
 
 #[test]
@@ -11,11 +12,11 @@ fn one_panel_is_exact_to_degree_22_and_its_gauss_part_is_the_rule_of_7() {
             out[0] = libm::pow(x, f64::from(degree));
         });
         let expected = 1.0 / (f64::from(degree) + 1.0);
-        assert!((e.value[0] - expected).abs() < 4e-16, "degree {degree}: {:e}", e.value[0] - expected);
+        near!(e.value[0], expected, TWO_ULPS, "degree {degree}: {:e}", e.value[0] - expected);
         assert_eq!(calls, 15);
         // the pair agrees, so the estimate is rounding, as long as both are exact
         if degree <= 13 {
-            assert!(e.error[0] < 1e-13, "degree {degree}: {:e}", e.error[0]);
+            assert!(e.error[0] < DIGIT_LOST, "degree {degree}: {:e}", e.error[0]);
         }
     }
 }
@@ -37,7 +38,7 @@ fn errors_stay_below_tolerance_and_estimate() {
             let e = line::integrate(&ends, 1, tolerance, &mut |x, out| out[0] = f(x));
             let error = (e.value[0] - expected).abs();
             assert!(error <= e.error[0], "{name} {tolerance:e}: {error:e} above {:e}", e.error[0]);
-            assert!(error <= tolerance.max(1e-12 * expected.abs()), "{name} {tolerance:e}: {error:e}");
+            assert!(error <= tolerance.max(DIGITS_LOST * expected.abs()), "{name} {tolerance:e}: {error:e}");
         }
     }
     // channels are independent of each other
@@ -45,8 +46,8 @@ fn errors_stay_below_tolerance_and_estimate() {
         out[0] = libm::sin(x);
         out[1] = libm::sqrt(x);
     });
-    assert!((both.value[0] - 2.0).abs() < 1e-14);
-    assert!((both.value[1] - 2.0 / 3.0 * pi * pi.sqrt()).abs() < 1e-10);
+    near!(both.value[0], 2.0, MANY_ROUNDINGS);
+    near!(both.value[1], 2.0 / 3.0 * pi * pi.sqrt(), INTEGRAL_10);
 }
 
 #[test]

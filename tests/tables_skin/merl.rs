@@ -1,5 +1,6 @@
 //! The MERL binary, read by the index functions of the published reader (written here from its text, apart from the writer).
 
+use crate::tolerance::{SINGLE, SINGLE_ANGLES, SINGLE_NEAREST, near};
 use brdfbake::cancel::Cancel;
 use brdfbake::encode::Storage;
 use brdfbake::models::{self, Params};
@@ -134,7 +135,7 @@ fn a_matte_surface_is_the_same_everywhere() {
         let got = brdf.lookup(a, b, c, d);
         for (got, factor) in got.iter().zip([1.0, 0.5, 0.25]) {
             let expected = 0.5 * FRAC_1_PI * factor;
-            assert!((got - expected).abs() < 1e-7 * expected, "{a} {b} {c} {d}: {got} {expected}");
+            near!(*got, expected, SINGLE * expected, "{a} {b} {c} {d}: {got} {expected}");
         }
     }
 }
@@ -159,7 +160,7 @@ fn every_cell_is_found_by_the_published_indices() {
                 // what the reader makes of the directions are the angles that they were made from
                 let angles = std_coords_to_half_diff_coords(ti, fi, to, fo);
                 for (got, expected) in angles.iter().zip([theta_h, theta_d, phi_d]) {
-                    assert!((got - expected).abs() < 1e-6, "{theta_h} {theta_d} {phi_d}: {angles:?}");
+                    near!(*got, expected, SINGLE_ANGLES, "{theta_h} {theta_d} {phi_d}: {angles:?}");
                 }
                 // turned about the normal, and with both directions exchanged, it is the same cell
                 for got in [
@@ -168,10 +169,7 @@ fn every_cell_is_found_by_the_published_indices() {
                     brdf.lookup(to, fo, ti, fi),
                 ] {
                     let expected = model.eval(wo, wi);
-                    assert!(
-                        (got[1] - expected).abs() <= 6.1e-8 * expected,
-                        "{h} {d} {p}: {got:?} {expected}"
-                    );
+                    near!(got[1], expected, SINGLE_NEAREST * expected, "{h} {d} {p}: {got:?} {expected}");
                     lit += usize::from(expected > 0.0);
                 }
                 seen += 1;
@@ -241,7 +239,7 @@ fn python_reads_it_too() {
         .output();
     let text = String::from_utf8(out.unwrap().stdout).unwrap();
     for number in text.split_whitespace() {
-        assert!((number.parse::<f64>().unwrap() - 0.5 * FRAC_1_PI).abs() < 1e-7, "{text}");
+        near!(number.parse::<f64>().unwrap(), 0.5 * FRAC_1_PI, SINGLE, "{text}");
     }
     assert_eq!(text.split_whitespace().count(), 3);
 }

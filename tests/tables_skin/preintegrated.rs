@@ -2,6 +2,7 @@
 
 use super::helpers::{close, rows, table, texel};
 use crate::common::{bake, request};
+use crate::tolerance::{DRAWN, FEW_ROUNDINGS, INTEGRAL_6_TWICE, LIMIT_NEAR};
 use brdfbake::grid::{Axis, Quantity, Texel};
 use brdfbake::integrate::gauss;
 use brdfbake::tables::Bound;
@@ -23,7 +24,7 @@ fn the_ring_agrees_with_high_precision_values() {
             let (e, c) = (texel(&bound, &at, tolerance), row.channel());
             let error = (e.value[c] - row.value).abs();
             assert!(
-                error <= tolerance && error <= e.error[c] + 1e-15,
+                error <= tolerance && error <= e.error[c] + FEW_ROUNDINGS,
                 "{} {tolerance:e}: {error:e}",
                 row.name
             );
@@ -61,7 +62,7 @@ fn a_tiny_ball_is_lit_evenly() {
         let bound = table("preintegrated-skin", "rgb", params, &[AXES[0], ("curvature", 0.0, 1e3)]);
         for mu in [-1.0, 0.0, 1.0] {
             // red light spreads over more than a millimetre
-            close(params, texel(&bound, &[mu, 1e3], 1e-9).value[0], mean, 1e-2);
+            close(params, texel(&bound, &[mu, 1e3], 1e-9).value[0], mean, LIMIT_NEAR);
         }
     }
 }
@@ -95,7 +96,7 @@ fn the_mean_light_is_kept() {
                     PI,
                 ];
                 let sum: f64 = ends.windows(2).map(|w| gauss::rule(24).integrate(w[0], w[1], f)).sum();
-                close(params, sum, if sphere { 0.5 } else { 1.0 }, 2e-6);
+                close(params, sum, if sphere { 0.5 } else { 1.0 }, INTEGRAL_6_TWICE);
             }
         }
     }
@@ -123,7 +124,7 @@ fn the_sphere_is_what_random_points_on_it_say() {
         sum += (light[0] * sin_b * libm::cos(2.0 * PI * unit()) + light[1] * cos_b).max(0.0);
     }
     let got = texel(&bound, &[libm::cos(theta), 1.0 / r], 1e-9).value[0];
-    close("sphere", got, sum / f64::from(n), 2e-3);
+    close("sphere", got, sum / f64::from(n), DRAWN);
 }
 
 #[test]

@@ -2,6 +2,9 @@
 
 use super::helpers::{close, rows, table, texel};
 use crate::common::{bake, request};
+use crate::tolerance::{
+    ANGLE_AT_THE_END, DIGIT_LOST_TWICE, FEW_ROUNDINGS, INTEGRAL_9, MANY_ROUNDINGS, SPECTRUM_SUM,
+};
 use brdfbake::grid::{Axis, Quantity, Texel};
 use brdfbake::integrate::line;
 use brdfbake::verify;
@@ -26,7 +29,12 @@ fn phase_functions_agree_with_high_precision_values() {
                 names.iter().map(|n| format!(r#", "{}": {}"#, n.1, row.params[n.0])).collect();
             let params = format!(r#"{{"phase": "{id}"{}}}"#, given.concat());
             let bound = table("phase-function", "density", &params, &[ANGLE]);
-            close(&row.name, texel(&bound, &[row.angle], 1e-9).value[0], row.value, 2e-13 * row.value);
+            close(
+                &row.name,
+                texel(&bound, &[row.angle], 1e-9).value[0],
+                row.value,
+                DIGIT_LOST_TWICE * row.value,
+            );
         }
     }
 }
@@ -35,7 +43,12 @@ fn phase_functions_agree_with_high_precision_values() {
 fn samples_of_phase_functions_agree_with_high_precision_values() {
     for row in rows("points_volume", "hg_sample_cos") {
         let bound = table("phase-sampling", "cosine", "{}", &[("u", 0.0, 1.0), ("g", -1.0, 1.0)]);
-        close(&row.name, texel(&bound, &[row.num("xi"), row.num("g")], 1e-9).value[0], row.value, 1e-14);
+        close(
+            &row.name,
+            texel(&bound, &[row.num("xi"), row.num("g")], 1e-9).value[0],
+            row.value,
+            MANY_ROUNDINGS,
+        );
     }
 }
 
@@ -61,10 +74,10 @@ fn the_part_of_the_light_behind_a_sample_is_its_number() {
             let behind = line::integrate(&breaks, 1, 1e-12, &mut |t, out| {
                 out[0] = 2.0 * PI * libm::sin(t) * texel(&density, &[t], 1e-9).value[0];
             });
-            close(phase, behind.value[0], u, 1e-9);
+            close(phase, behind.value[0], u, INTEGRAL_9);
         }
-        close(phase, texel(&sampling, &[0.0], 1e-9).value[0], PI, 1e-6);
-        close(phase, texel(&sampling, &[1.0], 1e-9).value[0], 0.0, 1e-6);
+        close(phase, texel(&sampling, &[0.0], 1e-9).value[0], PI, ANGLE_AT_THE_END);
+        close(phase, texel(&sampling, &[1.0], 1e-9).value[0], 0.0, ANGLE_AT_THE_END);
     }
 }
 
@@ -74,7 +87,12 @@ fn media_agree_with_high_precision_values() {
         for row in rows("points_volume", name) {
             let params = format!(r#"{{"sigma_g": {}}}"#, row.params["sigma_t"]);
             let bound = table("beer-lambert", layout, &params, &[("path", 0.0, 100.0)]);
-            close(&row.name, texel(&bound, &[row.num("d")], 1e-9).value[1], row.value, 1e-14 * row.value);
+            close(
+                &row.name,
+                texel(&bound, &[row.num("d")], 1e-9).value[1],
+                row.value,
+                MANY_ROUNDINGS * row.value,
+            );
         }
     }
 }
@@ -87,7 +105,12 @@ fn black_bodies_agree_with_high_precision_values() {
             let bound = table("blackbody", "hue-unclamped", "{}", &axes);
             let (e, c) = (texel(&bound, &[row.num("T_K")], tolerance), row.channel());
             close(&format!("{} {tolerance:e}", row.name), e.value[c], row.value, tolerance);
-            close(&format!("{} {tolerance:e} estimate", row.name), e.value[c], row.value, e.error[c] + 1e-15);
+            close(
+                &format!("{} {tolerance:e} estimate", row.name),
+                e.value[c],
+                row.value,
+                e.error[c] + FEW_ROUNDINGS,
+            );
         }
     }
     // at the reference temperature the light is the hue; twice 5000 K has the luminance that Planck's law gives it
@@ -95,7 +118,7 @@ fn black_bodies_agree_with_high_precision_values() {
     let hue = table("blackbody", "hue", "{}", &axes);
     let (a, b) = (texel(&light, &[5000.0], 1e-9), texel(&hue, &[5000.0], 1e-9));
     for c in 0..3 {
-        close("reference", a.value[c], b.value[c], 1e-9);
+        close("reference", a.value[c], b.value[c], INTEGRAL_9);
     }
     let ends = |t: f64| {
         line::integrate(&[360.0, 530.9, 568.8, 830.0], 1, 1e3, &mut |l, out| {
@@ -105,7 +128,7 @@ fn black_bodies_agree_with_high_precision_values() {
     };
     let y = |v: &[f64]| 0.2126729 * v[0] + 0.7151522 * v[1] + 0.0721750 * v[2];
     let twice = texel(&light, &[10_000.0], 1e-9);
-    close("twice as hot", y(&twice.value), ends(10_000.0) / ends(5000.0), 1e-5);
+    close("twice as hot", y(&twice.value), ends(10_000.0) / ends(5000.0), SPECTRUM_SUM);
 }
 
 #[test]

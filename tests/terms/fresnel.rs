@@ -1,6 +1,10 @@
 //! Fresnel factors: reference values, limits, reversibility, no NaN anywhere.
 
 use crate::terms::values::{assert_relative, cosines, rows};
+use crate::tolerance::{
+    DIGIT_LOST, DIGITS_LOST, FEW_ROUNDINGS, LONG_SUM, MANY_ROUNDINGS, SQUARED_ROUNDING, TEN_ROUNDINGS, ULP,
+    near,
+};
 use brdfbake::math::frame;
 use brdfbake::terms::fresnel::{self, Polarised};
 use glam::DVec3;
@@ -21,7 +25,7 @@ fn dielectric_matches_reference_values() {
         ("fresnel_dielectric_unpolarised", Polarised::unpolarised),
     ] {
         for row in rows(FILE, model) {
-            row.check(pick(fresnel::dielectric(libm::cos(row.wi_theta()), row.num("eta"))), 1e-13);
+            row.check(pick(fresnel::dielectric(libm::cos(row.wi_theta()), row.num("eta"))), DIGIT_LOST);
         }
     }
 }
@@ -34,7 +38,10 @@ fn conductor_matches_reference_values() {
         ("fresnel_conductor_unpolarised", Polarised::unpolarised),
     ] {
         for row in rows(FILE, model) {
-            row.check(pick(fresnel::conductor(libm::cos(row.wi_theta()), row.num("n"), row.num("k"))), 1e-13);
+            row.check(
+                pick(fresnel::conductor(libm::cos(row.wi_theta()), row.num("n"), row.num("k"))),
+                DIGIT_LOST,
+            );
         }
     }
 }
@@ -99,10 +106,10 @@ fn dielectric_keeps_its_digits_for_nearly_equal_media_and_at_grazing() {
     for &[c, eta, rs, rp, ts, tp] in DIELECTRIC {
         let what = format!("cos = {c:e}, eta = {eta}");
         let (r, t) = (fresnel::dielectric(c, eta), fresnel::dielectric_transmittance(c, eta));
-        assert_relative(&what, r.s, rs, 1e-14);
-        assert_relative(&what, r.p, rp, 1e-14);
-        assert_relative(&what, t.s, ts, 1e-14);
-        assert_relative(&what, t.p, tp, 1e-14);
+        assert_relative(&what, r.s, rs, MANY_ROUNDINGS);
+        assert_relative(&what, r.p, rp, MANY_ROUNDINGS);
+        assert_relative(&what, t.s, ts, MANY_ROUNDINGS);
+        assert_relative(&what, t.p, tp, MANY_ROUNDINGS);
     }
 }
 
@@ -117,7 +124,7 @@ fn dielectric_reflects_and_transmits_all_the_power_on_both_sides() {
             both_in_unit_interval(&what, r);
             both_in_unit_interval(&what, t);
             assert!(
-                (r.s + t.s - 1.0).abs() < 1e-14 && (r.p + t.p - 1.0).abs() < 1e-14,
+                (r.s + t.s - 1.0).abs() < MANY_ROUNDINGS && (r.p + t.p - 1.0).abs() < MANY_ROUNDINGS,
                 "{what}: {r:?} + {t:?}"
             );
             assert!(r.s >= r.p * (1.0 - 1e-14), "{what}: the s wave is the stronger one, {r:?}");
@@ -127,7 +134,7 @@ fn dielectric_reflects_and_transmits_all_the_power_on_both_sides() {
                 // Near the critical angle the last bit of the returning cosine decides.
                 let ratio = eta.max(1.0 / eta);
                 let slack = 1e-13 + 1e-15 * ratio * ratio * ratio / (cos_t * c.abs());
-                assert!((back - r.unpolarised()).abs() <= slack, "{what}: forth {r:?}, back {back}");
+                near!(back, r.unpolarised(), slack, "{what}: forth {r:?}, back {back}");
             } else {
                 assert_eq!((r.s, r.p), (1.0, 1.0), "{what}: total internal reflection");
                 assert_eq!((t.s, t.p), (0.0, 0.0), "{what}: total internal reflection");
@@ -155,10 +162,10 @@ fn below_an_interface_is_above_the_inverse_one() {
 fn dielectric_special_angles() {
     for eta in [0.5, 0.75, 1.0009765625, 1.328125, 1.5, 2.5, 10.0] {
         let r0 = (eta - 1.0) / (eta + 1.0);
-        assert_relative("normal", fresnel::dielectric(1.0, eta).unpolarised(), r0 * r0, 1e-14);
+        assert_relative("normal", fresnel::dielectric(1.0, eta).unpolarised(), r0 * r0, MANY_ROUNDINGS);
         let zero = fresnel::dielectric(fresnel::cos_brewster(eta), eta).p;
-        assert!(zero < 1e-30, "eta = {eta}: R_p = {zero:e} at Brewster's angle");
-        assert_relative("grazing", fresnel::dielectric(0.0, eta).unpolarised(), 1.0, 1e-15);
+        assert!(zero < SQUARED_ROUNDING, "eta = {eta}: R_p = {zero:e} at Brewster's angle");
+        assert_relative("grazing", fresnel::dielectric(0.0, eta).unpolarised(), 1.0, FEW_ROUNDINGS);
         let critical = fresnel::cos_critical(eta);
         let dense_side = if eta < 1.0 { 1.0 } else { -1.0 };
         assert_eq!(fresnel::dielectric(dense_side * critical * (1.0 - 1e-9), eta).unpolarised(), 1.0);
@@ -170,15 +177,15 @@ fn dielectric_special_angles() {
     }
     assert_eq!(fresnel::dielectric(0.0, 1.0).unpolarised(), 0.0);
     for row in rows("points_basics", "critical_angle_rad") {
-        row.check(libm::acos(fresnel::cos_critical(row.num("eta_dense_over_rare"))), 1e-14);
-        row.check(libm::acos(fresnel::cos_critical(1.0 / row.num("eta_dense_over_rare"))), 1e-12);
+        row.check(libm::acos(fresnel::cos_critical(row.num("eta_dense_over_rare"))), MANY_ROUNDINGS);
+        row.check(libm::acos(fresnel::cos_critical(1.0 / row.num("eta_dense_over_rare"))), DIGITS_LOST);
     }
     for row in rows("points_basics", "brewster_angle_rad") {
-        row.check(libm::acos(fresnel::cos_brewster(row.num("eta_t_over_i"))), 1e-14);
+        row.check(libm::acos(fresnel::cos_brewster(row.num("eta_t_over_i"))), MANY_ROUNDINGS);
     }
     for row in rows("points_basics", "radiance_scale_T_times_eta2_normal_incidence") {
         let eta = row.num("eta_t_over_i");
-        row.check(fresnel::dielectric_transmittance(1.0, eta).unpolarised() * eta * eta, 1e-14);
+        row.check(fresnel::dielectric_transmittance(1.0, eta).unpolarised() * eta * eta, MANY_ROUNDINGS);
     }
 }
 
@@ -187,9 +194,9 @@ fn refraction_matches_reference_values() {
     for (model, axis) in [("refract_x", DVec3::X), ("refract_y", DVec3::Y), ("refract_z", DVec3::Z)] {
         for row in rows("points_basics", model) {
             let wt = fresnel::refract(row.wi(), row.wo(), row.num("eta_t_over_i")).unwrap();
-            assert_relative("length", wt.length(), 1.0, 1e-15);
+            assert_relative("length", wt.length(), 1.0, FEW_ROUNDINGS);
             // Components are compared in units of the length: those near 0 are differences.
-            assert!((wt.dot(axis) - row.value).abs() < 2e-16 + 1e-15 * row.value.abs(), "{}: {wt}", row.name);
+            near!(wt.dot(axis), row.value, ULP + FEW_ROUNDINGS * row.value.abs(), "{}: {wt}", row.name);
         }
     }
     let w = frame::spherical(0.7, 0.3);
@@ -201,7 +208,7 @@ fn refraction_matches_reference_values() {
     assert_eq!(fresnel::refract(frame::from_mu(0.1), DVec3::Z, 0.5), None);
     // There and back again, from below: wt leaves along −wt, which refracts to −w.
     let wt = fresnel::refract(w, DVec3::Z, 1.5).unwrap();
-    assert!((fresnel::refract(wt, DVec3::Z, 1.5).unwrap() - w).length() < 1e-15);
+    assert!((fresnel::refract(wt, DVec3::Z, 1.5).unwrap() - w).length() < FEW_ROUNDINGS);
 }
 
 /// `cos_i`, n, k, 1 − `R_s`, 1 − `R_p`; mpmath, 60 digits, textbook amplitudes.
@@ -222,10 +229,10 @@ fn absorptance_of_good_metals_keeps_its_digits() {
     for &[c, n, k, a_s, a_p] in METAL {
         let what = format!("cos = {c:e}, n = {n}, k = {k}");
         let (a, r) = (fresnel::conductor_absorptance(c, n, k), fresnel::conductor(c, n, k));
-        assert_relative(&what, a.s, a_s, 1e-14);
-        assert_relative(&what, a.p, a_p, 1e-14);
-        assert_relative(&what, r.s, 1.0 - a_s, 1e-14 / (1.0 - a_s));
-        assert_relative(&what, r.p, 1.0 - a_p, 1e-14 / (1.0 - a_p));
+        assert_relative(&what, a.s, a_s, MANY_ROUNDINGS);
+        assert_relative(&what, a.p, a_p, MANY_ROUNDINGS);
+        assert_relative(&what, r.s, 1.0 - a_s, MANY_ROUNDINGS / (1.0 - a_s));
+        assert_relative(&what, r.p, 1.0 - a_p, MANY_ROUNDINGS / (1.0 - a_p));
     }
 }
 
@@ -239,14 +246,17 @@ fn conductor_laws_over_the_whole_domain() {
                 both_in_unit_interval(&what, r);
                 both_in_unit_interval(&what, a);
                 assert!(
-                    (r.s + a.s - 1.0).abs() < 3e-15 && (r.p + a.p - 1.0).abs() < 3e-15,
+                    (r.s + a.s - 1.0).abs() < LONG_SUM && (r.p + a.p - 1.0).abs() < LONG_SUM,
                     "{what}: {r:?} + {a:?}"
                 );
             }
             if n + k > 0.0 {
                 let f0 = ((n - 1.0) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k);
                 let got = fresnel::conductor(1.0, n, k);
-                assert!((got.s - f0).abs() <= 1e-14 * f0 && (got.p - f0).abs() <= 1e-14 * f0, "{n} {k}");
+                assert!(
+                    (got.s - f0).abs() <= MANY_ROUNDINGS * f0 && (got.p - f0).abs() <= MANY_ROUNDINGS * f0,
+                    "{n} {k}"
+                );
             }
         }
     }
@@ -258,8 +268,8 @@ fn conductor_without_absorption_is_the_dielectric() {
         for c in cosines().into_iter().chain([0.0]) {
             let (metal, glass) = (fresnel::conductor(c, n, 0.0), fresnel::dielectric(c, n));
             let what = format!("cos = {c:e}, n = {n}");
-            assert!((metal.s - glass.s).abs() <= 1e-13 * glass.s, "{what}: {metal:?} {glass:?}");
-            assert!((metal.p - glass.p).abs() <= 1e-13 * glass.p + 1e-30, "{what}: {metal:?} {glass:?}");
+            near!(metal.s, glass.s, DIGIT_LOST * glass.s, "{what}: {metal:?} {glass:?}");
+            near!(metal.p, glass.p, DIGIT_LOST * glass.p + SQUARED_ROUNDING, "{what}: {metal:?} {glass:?}");
         }
     }
 }
@@ -293,9 +303,9 @@ const AVERAGE: &[(f64, f64)] = &[
 #[test]
 fn dielectric_average_matches_reference_values() {
     for &(eta, expected) in AVERAGE {
-        assert_relative(&format!("eta = {eta}"), fresnel::dielectric_average(eta), expected, 2e-15);
+        assert_relative(&format!("eta = {eta}"), fresnel::dielectric_average(eta), expected, TEN_ROUNDINGS);
     }
     assert_eq!(fresnel::dielectric_average(1.0), 0.0);
     let next = 1.0 + f64::EPSILON;
-    assert_relative("1 + 2^-52", fresnel::dielectric_average(next), f64::EPSILON / 3.0, 1e-13);
+    assert_relative("1 + 2^-52", fresnel::dielectric_average(next), f64::EPSILON / 3.0, DIGIT_LOST);
 }

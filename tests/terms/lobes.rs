@@ -1,6 +1,10 @@
 //! Blinn-Phong, GTR and the V-cavity: reference values, norms, samplers, finiteness.
 
 use crate::terms::values::{Row, assert_relative, cosines, rows};
+use crate::tolerance::{
+    DIGIT_LOST, DIGIT_LOST_TWICE, FEW_ROUNDINGS, INTEGRAL_10, INTEGRAL_11, INTEGRAL_12, INTEGRAL_13,
+    MANY_ROUNDINGS, near,
+};
 use brdfbake::integrate::gauss;
 use brdfbake::integrate::sobol::{Sobol, replicate_mean};
 use brdfbake::math::frame;
@@ -46,7 +50,10 @@ pub(crate) fn assert_sampler(
     for x in [0.0, 1e-300, 0.5, 1.0 - f64::EPSILON, 1.0] {
         for y in [0.0, 0.3, 1.0] {
             let m = sample(DVec2::new(x, y));
-            assert!((m.length() - 1.0).abs() < 1e-14 && m.z >= 0.0, "{what}: u = ({x}, {y}) gives {m}");
+            assert!(
+                (m.length() - 1.0).abs() < MANY_ROUNDINGS && m.z >= 0.0,
+                "{what}: u = ({x}, {y}) gives {m}"
+            );
         }
     }
 }
@@ -54,10 +61,10 @@ pub(crate) fn assert_sampler(
 #[test]
 fn blinn_phong_matches_reference_values() {
     for row in rows(TERMS, "D_blinn_phong") {
-        row.check(blinn_phong::d(row.num("n"), row.wi()), 2e-13);
+        row.check(blinn_phong::d(row.num("n"), row.wi()), DIGIT_LOST_TWICE);
     }
     for row in rows(SAMPLING, "sample_blinn_D_costheta") {
-        row.check(blinn_phong::sample_d(row.num("n"), DVec2::new(row.num("u"), 0.0)).z, 1e-15);
+        row.check(blinn_phong::sample_d(row.num("n"), DVec2::new(row.num("u"), 0.0)).z, FEW_ROUNDINGS);
     }
 }
 
@@ -66,14 +73,19 @@ fn blinn_phong_is_normalised_and_sampled() {
     for n in [0.0, 1.0, 2.5, 30.0, 1e3, 1e5, 1e7] {
         let width = blinn_phong::equivalent_alpha(n);
         let what = format!("n = {n}");
-        assert_relative(&what, hemisphere(width, |m| blinn_phong::d(n, m) * m.z), 1.0, 1e-11);
+        assert_relative(&what, hemisphere(width, |m| blinn_phong::d(n, m) * m.z), 1.0, INTEGRAL_11);
         assert_sampler(&what, width, |m| blinn_phong::d(n, m), |u| blinn_phong::sample_d(n, u));
         for mu in cosines() {
             let d = blinn_phong::d(n, frame::from_mu(mu));
             assert!(d.is_finite() && d >= 0.0, "{what}, mu = {mu}: {d}");
         }
         // The peaks of D agree at the equivalent width.
-        assert_relative(&what, Beckmann::isotropic(width).d(DVec3::Z), blinn_phong::d(n, DVec3::Z), 1e-14);
+        assert_relative(
+            &what,
+            Beckmann::isotropic(width).d(DVec3::Z),
+            blinn_phong::d(n, DVec3::Z),
+            MANY_ROUNDINGS,
+        );
     }
     assert_eq!(blinn_phong::d(5.0, DVec3::X), 0.0);
 }
@@ -81,17 +93,17 @@ fn blinn_phong_is_normalised_and_sampled() {
 #[test]
 fn gtr_matches_reference_values() {
     for row in rows(TERMS, "D_gtr") {
-        row.check(gtr::d(row.num("alpha"), row.num("gamma"), row.wi()), 1e-13);
+        row.check(gtr::d(row.num("alpha"), row.num("gamma"), row.wi()), INTEGRAL_13);
     }
     let square = |row: &Row, gamma| {
         let m = gtr::sample_d(row.num("alpha"), gamma, DVec2::new(row.num("u"), 0.0));
         m.z * m.z
     };
     for row in rows(SAMPLING, "sample_gtr_cos2theta") {
-        row.check(square(&row, row.num("gamma")), 1e-14);
+        row.check(square(&row, row.num("gamma")), MANY_ROUNDINGS);
     }
     for row in rows(SAMPLING, "sample_gtr1_cos2theta") {
-        row.check(square(&row, 1.0), 1e-14);
+        row.check(square(&row, 1.0), MANY_ROUNDINGS);
     }
 }
 
@@ -101,7 +113,7 @@ fn gtr_is_normalised_sampled_and_regular_at_its_removable_singularities() {
         for gamma in [0.25, 1.0, 1.0009765625, 1.5, 2.0, 3.0, 10.0] {
             let what = format!("alpha = {alpha}, gamma = {gamma}");
             let d = |m| gtr::d(alpha, gamma, m);
-            assert_relative(&what, hemisphere(alpha, |m| d(m) * m.z), 1.0, 1e-10);
+            assert_relative(&what, hemisphere(alpha, |m| d(m) * m.z), 1.0, INTEGRAL_10);
             // Narrower, the mean hangs on a few samples of the tail in 30000.
             if alpha >= 0.01 {
                 assert_sampler(&what, alpha, d, |u| gtr::sample_d(alpha, gamma, u));
@@ -114,7 +126,7 @@ fn gtr_is_normalised_sampled_and_regular_at_its_removable_singularities() {
         // gamma = 2 is GGX.
         for mu in cosines() {
             let w = frame::from_mu(mu);
-            assert_relative("GGX", gtr::d(alpha, 2.0, w), Ggx::isotropic(alpha).d(w), 1e-13);
+            assert_relative("GGX", gtr::d(alpha, 2.0, w), Ggx::isotropic(alpha).d(w), DIGIT_LOST);
         }
     }
     for alpha in [0.0, 1e-300] {
@@ -134,14 +146,14 @@ fn v_cavities_match_reference_values() {
         f * d(half.wh) * vcavity::g2(wo, wi, half.wh, half.cos_d) / (4.0 * wo.z * wi.z)
     };
     for row in rows("points_microfacet", "torrance_sparrow_beckmann_vcavity") {
-        row.check(shade(&row, &|m| Beckmann::isotropic(row.num("m")).d(m)), 1e-12);
+        row.check(shade(&row, &|m| Beckmann::isotropic(row.num("m")).d(m)), INTEGRAL_12);
     }
     for row in rows("points_microfacet", "torrance_sparrow_blinn_vcavity") {
-        row.check(shade(&row, &|m| blinn_phong::d(row.num("n"), m)), 1e-12);
+        row.check(shade(&row, &|m| blinn_phong::d(row.num("n"), m)), INTEGRAL_12);
     }
     // The form of 1982, with D without 1/π and 1/π instead of 1/4, is four times the modern one.
     for row in rows("points_microfacet", "cook_torrance_1982_seed_form") {
-        row.check(4.0 * shade(&row, &|m| Beckmann::isotropic(row.num("m")).d(m)), 1e-12);
+        row.check(4.0 * shade(&row, &|m| Beckmann::isotropic(row.num("m")).d(m)), INTEGRAL_12);
     }
 }
 
@@ -155,7 +167,7 @@ fn v_cavities_show_each_direction_its_projected_area() {
             let m = ggx.sample_visible(wo, u);
             [vcavity::g1(wo, m, wo.dot(m)) * ggx.facing_area(wo) / mu]
         });
-        assert!((mean.mean - 1.0).abs() < 5.0 * mean.standard_error, "mu = {mu}: {mean:?}");
+        near!(mean.mean, 1.0, 5.0 * mean.standard_error, "mu = {mu}: {mean:?}");
     }
     for u in Sobol::new(3).points(500) {
         let (wo, wi) = (frame::spherical(1.57 * u.x, 0.3), frame::spherical(1.57 * u.y, 6.0 * u.x));

@@ -1,6 +1,7 @@
 //! GGX and Beckmann with Smith masking: reference values, identities, finiteness over the whole domain.
 
 use crate::terms::values::{Row, assert_relative, cosines, rows};
+use crate::tolerance::{DIGIT_LOST, DIGIT_LOST_TWICE, FEW_ROUNDINGS, MANY_ROUNDINGS, TEN_ROUNDINGS, near};
 use brdfbake::math::frame;
 use brdfbake::terms::beckmann::Beckmann;
 use brdfbake::terms::ggx::Ggx;
@@ -45,22 +46,22 @@ fn directions() -> Vec<DVec3> {
 #[test]
 fn distributions_match_reference_values() {
     for row in rows("points_terms", "D_ggx") {
-        row.check(ggx(&row).d(row.wi()), 1e-13);
+        row.check(ggx(&row).d(row.wi()), DIGIT_LOST);
     }
     for row in rows("points_terms", "D_beckmann") {
         // Three rows are below 1e-308 and must be 0 (their values parse as 0).
-        row.check(beckmann(&row).d(row.wi()), 1e-13);
+        row.check(beckmann(&row).d(row.wi()), DIGIT_LOST);
     }
 }
 
 #[test]
 fn masking_matches_reference_values() {
     for row in rows("points_terms", "Lambda_ggx") {
-        row.check(ggx(&row).lambda(row.wi()), 1e-13);
+        row.check(ggx(&row).lambda(row.wi()), DIGIT_LOST);
     }
     for row in rows("points_terms", "Lambda_beckmann") {
         // Down to 1.38e-145, where exp(−333) turns an ulp of its argument into 7e-14.
-        row.check(beckmann(&row).lambda(row.wi()), 2e-13);
+        row.check(beckmann(&row).lambda(row.wi()), DIGIT_LOST_TWICE);
     }
 }
 
@@ -91,14 +92,14 @@ fn beckmann_masking_has_all_digits_at_every_angle() {
     for &(a, expected) in LAMBDA {
         let w = DVec3::new(1.0, 0.0, a).normalize();
         let got = Beckmann::isotropic(1.0).lambda(w);
-        assert_relative(&format!("a = {a}"), got, expected, 2e-15 + 1e-15 * a * a);
+        assert_relative(&format!("a = {a}"), got, expected, TEN_ROUNDINGS + FEW_ROUNDINGS * a * a);
     }
 }
 
 #[test]
 fn visible_normals_match_reference_values() {
     for row in rows("points_terms", "vndf_ggx") {
-        row.check(ggx(&row).d_visible(row.wi(), row.wo()), 1e-13);
+        row.check(ggx(&row).d_visible(row.wi(), row.wo()), DIGIT_LOST);
     }
 }
 
@@ -139,7 +140,7 @@ fn everything_is_finite_from_grazing_to_normal_for_every_width() {
                 assert!(d >= 0.0 && d.is_finite(), "{what}: D = {d}");
                 assert!(lambda >= 0.0 && lambda.is_finite(), "{what}: Lambda = {lambda}");
                 assert!((0.0..=1.0).contains(&g1), "{what}: G1 = {g1}");
-                assert!((g1 * (1.0 + lambda) - 1.0).abs() < 1e-15, "{what}: G1 (1 + Lambda) = 1");
+                near!(g1 * (1.0 + lambda), 1.0, FEW_ROUNDINGS, "{what}: G1 (1 + Lambda) = 1");
             }
             for &wo in directions.iter().step_by(7) {
                 for &wi in directions.iter().step_by(3) {
@@ -154,12 +155,15 @@ fn everything_is_finite_from_grazing_to_normal_for_every_width() {
 fn check_pair(ndf: &dyn Ndf, wo: DVec3, wi: DVec3) {
     let what = format!("{ndf:?} wo {wo} wi {wi}");
     let (g2, apart) = (ndf.g2(wo, wi), ndf.g2_separable(wo, wi));
-    assert!((0.0..=1.0).contains(&g2) && apart <= g2 * (1.0 + 1e-15), "{what}: G2 = {g2}, separable {apart}");
-    assert_relative(&what, g2, 1.0 / (1.0 + ndf.lambda(wo) + ndf.lambda(wi)), 1e-14);
+    assert!(
+        (0.0..=1.0).contains(&g2) && apart <= g2 * (1.0 + FEW_ROUNDINGS),
+        "{what}: G2 = {g2}, separable {apart}"
+    );
+    assert_relative(&what, g2, 1.0 / (1.0 + ndf.lambda(wo) + ndf.lambda(wi)), MANY_ROUNDINGS);
     let (v, v_apart) = (ndf.visibility(wo, wi), ndf.visibility_separable(wo, wi));
     assert!(v.is_finite() && v_apart.is_finite(), "{what}: V = {v}, separable {v_apart}");
-    assert_relative(&what, v, g2 / (4.0 * wo.z * wi.z), 1e-14);
-    assert_relative(&what, v_apart, apart / (4.0 * wo.z * wi.z), 1e-14);
+    assert_relative(&what, v, g2 / (4.0 * wo.z * wi.z), MANY_ROUNDINGS);
+    assert_relative(&what, v_apart, apart / (4.0 * wo.z * wi.z), MANY_ROUNDINGS);
     assert_eq!((v, v_apart, g2), (ndf.visibility(wi, wo), ndf.visibility_separable(wi, wo), ndf.g2(wi, wo)));
     let visible = ndf.d_visible(wo, wi);
     assert!(visible.is_finite() && visible >= 0.0, "{what}: D_visible = {visible}");
@@ -226,7 +230,12 @@ fn width_one_ggx_is_the_law_of_lommel_and_seeliger() {
         for wi in directions().into_iter().step_by(4) {
             let half = frame::half_vector(wo, wi).unwrap();
             let expected = 0.5 / (std::f64::consts::PI * (wo.z + wi.z));
-            assert_relative(&format!("{wo} {wi}"), ndf.d(half.wh) * ndf.visibility(wo, wi), expected, 1e-14);
+            assert_relative(
+                &format!("{wo} {wi}"),
+                ndf.d(half.wh) * ndf.visibility(wo, wi),
+                expected,
+                MANY_ROUNDINGS,
+            );
         }
     }
 }

@@ -1,6 +1,9 @@
 //! Densities and samplers of facet normals: fixed numbers, norms by Gauss rules, moments by scrambled Sobol points.
 
 use crate::terms::values::{assert_relative, rows};
+use crate::tolerance::{
+    DIGITS_LOST, DRAWN_SIGMA, FEW_ROUNDINGS, INTEGRAL_9, INTEGRAL_10, INTEGRAL_11, MANY_ROUNDINGS, near,
+};
 use brdfbake::integrate::gauss;
 use brdfbake::integrate::sobol::{ReplicateMean, Sobol, replicate_mean};
 use brdfbake::math::{frame, special};
@@ -22,11 +25,11 @@ fn both(alpha: (f64, f64)) -> [Box<dyn Ndf>; 2] {
 fn samples_at_fixed_numbers_match_reference_values() {
     for row in rows(FILE, "sample_ggx_D_tan2theta") {
         let m = Ggx::isotropic(row.num("alpha")).sample_d(DVec2::new(row.num("u"), 0.0));
-        row.check(frame::tan2_theta(m), 1e-14);
+        row.check(frame::tan2_theta(m), MANY_ROUNDINGS);
     }
     for row in rows(FILE, "sample_beckmann_D_tan2theta") {
         let m = Beckmann::isotropic(row.num("alpha")).sample_d(DVec2::new(row.num("u"), 0.0));
-        row.check(frame::tan2_theta(m), 1e-14);
+        row.check(frame::tan2_theta(m), MANY_ROUNDINGS);
     }
     for (model, axis) in
         [("vndf_cap_sample_mx", DVec3::X), ("vndf_cap_sample_my", DVec3::Y), ("vndf_cap_sample_mz", DVec3::Z)]
@@ -36,7 +39,11 @@ fn samples_at_fixed_numbers_match_reference_values() {
             let m = ggx.sample_visible(row.wi(), DVec2::new(row.num("u1"), row.num("u2")));
             // Components near 0 are differences of numbers of size 1.
             let error = (m.dot(axis) - row.value).abs();
-            assert!(error < 1e-15 + 1e-14 * row.value.abs(), "{}: {m}, error {error:e}", row.name);
+            assert!(
+                error < FEW_ROUNDINGS + MANY_ROUNDINGS * row.value.abs(),
+                "{}: {m}, error {error:e}",
+                row.name
+            );
         }
     }
 }
@@ -82,7 +89,7 @@ fn distributions_are_normalised() {
     for alpha in ALPHAS {
         for ndf in both(alpha) {
             let norm = integrate_facing(alpha, DVec3::Z, |m| ndf.pdf_d(m));
-            assert_relative(&format!("{ndf:?}: ∫ D cos"), norm, 1.0, 1e-11);
+            assert_relative(&format!("{ndf:?}: ∫ D cos"), norm, 1.0, INTEGRAL_11);
         }
     }
 }
@@ -96,9 +103,9 @@ fn projected_area_is_mu_times_1_plus_lambda() {
                     let w = frame::spherical(theta, phi);
                     let what = format!("{ndf:?}, theta = {theta}, phi = {phi}");
                     let area = integrate_facing(alpha, w, |m| ndf.d(m) * w.dot(m).max(0.0));
-                    assert_relative(&format!("{what}: ∫ D w.m"), ndf.facing_area(w), area, 1e-10);
+                    assert_relative(&format!("{what}: ∫ D w.m"), ndf.facing_area(w), area, INTEGRAL_10);
                     let visible = integrate_facing(alpha, w, |m| ndf.d_visible(w, m));
-                    assert_relative(&format!("{what}: ∫ D_visible"), visible, 1.0, 1e-10);
+                    assert_relative(&format!("{what}: ∫ D_visible"), visible, 1.0, INTEGRAL_10);
                 }
             }
         }
@@ -112,8 +119,12 @@ pub(crate) fn moments(m: DVec3) -> [f64; 5] {
 pub(crate) fn assert_moments(what: &str, got: [ReplicateMean; 5], expected: impl Fn(usize) -> f64) {
     for (i, estimate) in got.into_iter().enumerate() {
         let (error, sigma) = ((estimate.mean - expected(i)).abs(), estimate.standard_error);
-        assert!(sigma < 2e-4, "{what}, moment {i}: {estimate:?}");
-        assert!(error < 5.0 * sigma + 1e-9, "{what}, moment {i}: {estimate:?}, expected {}", expected(i));
+        assert!(sigma < DRAWN_SIGMA, "{what}, moment {i}: {estimate:?}");
+        assert!(
+            error < 5.0 * sigma + INTEGRAL_9,
+            "{what}, moment {i}: {estimate:?}, expected {}",
+            expected(i)
+        );
     }
 }
 
@@ -154,8 +165,10 @@ fn visible_normals_of_width_one_reflect_uniformly_onto_a_cap() {
         });
         let expected = [0.5 * (1.0 - mu), (1.0 + mu * mu * mu) / (3.0 * (1.0 + mu))];
         for (got, expected) in [height, square].into_iter().zip(expected) {
-            assert!(
-                (got.mean - expected).abs() < 5.0 * got.standard_error + 1e-12,
+            near!(
+                got.mean,
+                expected,
+                5.0 * got.standard_error + DIGITS_LOST,
                 "mu = {mu}: {got:?}, {expected}"
             );
         }

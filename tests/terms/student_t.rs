@@ -2,6 +2,10 @@
 
 use crate::terms::sampling::{assert_moments, integrate_facing, moments};
 use crate::terms::values::{Row, assert_relative, cosines, rows};
+use crate::tolerance::{
+    DIGIT_LOST, DIGIT_LOST_TWICE, DIGITS_LOST, FEW_ROUNDINGS, INTEGRAL_9, INTEGRAL_10, LIMIT_FAR,
+    MANY_ROUNDINGS, near,
+};
 use brdfbake::integrate::sobol::replicate_mean;
 use brdfbake::math::frame;
 use brdfbake::terms::beckmann::Beckmann;
@@ -18,20 +22,20 @@ fn of(row: &Row) -> StudentT {
 #[test]
 fn student_t_matches_reference_values() {
     for row in rows("points_terms", "D_std") {
-        row.check(of(&row).d(row.wi()), 1e-13);
+        row.check(of(&row).d(row.wi()), DIGIT_LOST);
     }
     for row in rows("points_terms", "Lambda_std") {
-        row.check(of(&row).lambda(row.wi()), 2e-13);
+        row.check(of(&row).lambda(row.wi()), DIGIT_LOST_TWICE);
     }
     for row in rows("points_sampling", "sample_std_tan2theta") {
         let std = StudentT::isotropic(row.num("alpha"), row.num("gamma"));
-        row.check(frame::tan2_theta(std.sample_d(DVec2::new(row.num("u"), 0.0))), 1e-13);
+        row.check(frame::tan2_theta(std.sample_d(DVec2::new(row.num("u"), 0.0))), DIGIT_LOST);
     }
     for row in rows("points_microfacet", "std_smith_correlated") {
         let (wo, wi) = (row.wo(), row.wi());
         let half = frame::half_vector(wo, wi).unwrap();
         let f = schlick::schlick(row.num("F0"), 1.0, half.cos_d);
-        row.check(f * of(&row).d(half.wh) * of(&row).visibility(wo, wi), 1e-12);
+        row.check(f * of(&row).d(half.wh) * of(&row).visibility(wo, wi), DIGITS_LOST);
     }
 }
 
@@ -122,11 +126,11 @@ fn gamma_2_is_ggx_and_a_large_gamma_is_beckmann() {
         for mu in cosines() {
             let flat = frame::from_mu(mu);
             let w = DVec3::new(flat.x * 0.6, flat.x * 0.8, mu);
-            assert_relative(&format!("D {alpha:?} {mu}"), std.d(w), ggx.d(w), 1e-13);
-            assert_relative(&format!("Lambda {alpha:?} {mu}"), std.lambda(w), ggx.lambda(w), 1e-13);
+            assert_relative(&format!("D {alpha:?} {mu}"), std.d(w), ggx.d(w), DIGIT_LOST);
+            assert_relative(&format!("Lambda {alpha:?} {mu}"), std.lambda(w), ggx.lambda(w), DIGIT_LOST);
             // (1 + X/γ)^−γ = exp(−X + X²/2γ …).
             if beckmann.d(w) > 1e-12 / (alpha.0 * alpha.1) {
-                assert_relative(&format!("D {alpha:?} {mu}"), wide.d(w), beckmann.d(w), 1e-4);
+                assert_relative(&format!("D {alpha:?} {mu}"), wide.d(w), beckmann.d(w), LIMIT_FAR);
                 assert_relative(
                     &format!("Lambda {alpha:?} {mu}"),
                     wide.lambda(w) + 1.0,
@@ -145,10 +149,10 @@ fn norms_and_projected_areas() {
         for alpha in [(1.0, 1.0), (0.5, 0.125), (1e-3, 1e-3)] {
             let std = StudentT::new(alpha.0, alpha.1, gamma);
             let what = format!("{std:?}");
-            assert_relative(&what, integrate_facing(alpha, DVec3::Z, |m| std.pdf_d(m)), 1.0, 1e-10);
+            assert_relative(&what, integrate_facing(alpha, DVec3::Z, |m| std.pdf_d(m)), 1.0, INTEGRAL_10);
             for theta in [0.3, 1.0, 1.5] {
                 let w = frame::spherical(theta, 0.9);
-                assert_relative(&what, integrate_facing(alpha, w, |m| std.d_visible(w, m)), 1.0, 1e-9);
+                assert_relative(&what, integrate_facing(alpha, w, |m| std.d_visible(w, m)), 1.0, INTEGRAL_9);
             }
         }
     }
@@ -181,7 +185,7 @@ fn gamma_2_samples_visible_normals_like_ggx() {
         let ours = replicate_mean(24, 16, 1024, |u| moments(std.sample_visible(wo, u)));
         for (a, b) in theirs.into_iter().zip(ours) {
             let bound = 5.0 * libm::hypot(a.standard_error, b.standard_error) + 1e-9;
-            assert!((a.mean - b.mean).abs() < bound, "theta = {theta}: GGX {a:?}, STD {b:?}");
+            near!(a.mean, b.mean, bound, "theta = {theta}: GGX {a:?}, STD {b:?}");
         }
     }
 }
@@ -201,7 +205,7 @@ fn finite_over_the_whole_domain() {
                     for wo in [DVec3::Z, DVec3::X, frame::from_mu(0.3)] {
                         for m in [std.sample_d(DVec2::new(x, y)), std.sample_visible(wo, DVec2::new(x, y))] {
                             assert!(
-                                (m.length() - 1.0).abs() < 1e-14 && m.z >= 0.0,
+                                (m.length() - 1.0).abs() < MANY_ROUNDINGS && m.z >= 0.0,
                                 "{std:?} {wo} {x} {y}: {m}"
                             );
                         }
@@ -210,7 +214,7 @@ fn finite_over_the_whole_domain() {
             }
         }
     }
-    assert!((StudentT::isotropic(0.5, 3.0).gamma() - 3.0).abs() < 1e-15);
+    near!(StudentT::isotropic(0.5, 3.0).gamma(), 3.0, FEW_ROUNDINGS);
     assert_eq!(StudentT::isotropic(0.5, 3.0).d(DVec3::X), 0.0);
     assert_eq!(StudentT::isotropic(0.5, 3.0).lambda(DVec3::Z), 0.0);
 }

@@ -1,6 +1,9 @@
 //! Thin films: against Airy's formula in plain complex arithmetic, its limits, the series, and the eye's transform.
 
 use crate::terms::values::assert_relative;
+use crate::tolerance::{
+    DIGIT_LOST, DIGITS_LOST, DOUBLE_DOUBLE, FEW_ROUNDINGS, FRINGES_LEFT, MANY_ROUNDINGS, SERIES_CUT, near,
+};
 use brdfbake::integrate::gauss;
 use brdfbake::math::complex::Complex;
 use brdfbake::terms::fresnel;
@@ -39,7 +42,7 @@ fn equals_airys_formula() {
             for lambda in [380.0, 550.0, 700.0] {
                 let (got, expected) = (thin_film::airy(film, cos, lambda), airy(film, cos, lambda));
                 for (g, e) in [(got.s, expected[0]), (got.p, expected[1])] {
-                    assert!((g - e).abs() < 1e-13, "{film:?} {cos} {lambda}: {g} {e}");
+                    near!(g, e, DIGIT_LOST, "{film:?} {cos} {lambda}: {g} {e}");
                     assert!((0.0..=1.0).contains(&g), "{film:?} {cos} {lambda}: {g}");
                 }
             }
@@ -56,13 +59,13 @@ fn without_thickness_or_contrast_it_is_the_bare_substrate() {
             [Film { n2: 1.7, n3: 2.9, k3: 3.1, d_nm: 0.0 }, Film { n2: 1.0, n3: 2.9, k3: 3.1, d_nm: 333.0 }]
         {
             let got = thin_film::airy(&film, cos, 500.0);
-            assert_relative(&format!("s {film:?} {cos}"), got.s, bare.s, 1e-14);
-            assert_relative(&format!("p {film:?} {cos}"), got.p, bare.p, 1e-13);
+            assert_relative(&format!("s {film:?} {cos}"), got.s, bare.s, MANY_ROUNDINGS);
+            assert_relative(&format!("p {film:?} {cos}"), got.p, bare.p, DIGIT_LOST);
         }
         let glass = fresnel::dielectric(cos, 1.5);
         let got = thin_film::airy(&Film { n2: 1.5, n3: 1.5, k3: 0.0, d_nm: 800.0 }, cos, 500.0);
-        assert_relative(&format!("same {cos}"), got.s, glass.s, 1e-13);
-        assert!((got.p - glass.p).abs() < 1e-15, "{cos}");
+        assert_relative(&format!("same {cos}"), got.s, glass.s, DIGIT_LOST);
+        near!(got.p, glass.p, FEW_ROUNDINGS, "{cos}");
     }
 }
 
@@ -70,7 +73,7 @@ fn without_thickness_or_contrast_it_is_the_bare_substrate() {
 fn a_quarter_wave_of_the_geometric_mean_reflects_nothing() {
     let n2 = 1.5_f64.sqrt();
     let film = Film { n2, n3: 1.5, k3: 0.0, d_nm: 550.0 / (4.0 * n2) };
-    assert!(thin_film::airy(&film, 1.0, 550.0).unpolarised() < 1e-31);
+    assert!(thin_film::airy(&film, 1.0, 550.0).unpolarised() < DOUBLE_DOUBLE);
 }
 
 #[test]
@@ -80,8 +83,8 @@ fn the_series_converges_to_airys_formula() {
             let wave = |opd: f64, phase: f64| libm::cos(2.0 * PI * opd / 550.0 + phase);
             let got = thin_film::series(film, cos, 4000, &wave);
             let expected = thin_film::airy(film, cos, 550.0);
-            assert_relative(&format!("s {film:?} {cos}"), got.s, expected.s, 1e-11);
-            assert_relative(&format!("p {film:?} {cos}"), got.p, expected.p, 1e-11);
+            assert_relative(&format!("s {film:?} {cos}"), got.s, expected.s, SERIES_CUT);
+            assert_relative(&format!("p {film:?} {cos}"), got.p, expected.p, SERIES_CUT);
         }
     }
 }
@@ -108,7 +111,7 @@ fn colours_are_those_of_the_spectrum() {
                     });
             }
             let got = thin_film::sensitivity(channel, opd, shift);
-            assert!((got - expected / 1.0685e-7).abs() < 1e-12, "{channel:?} {opd} {shift}: {got}");
+            near!(got, expected / 1.0685e-7, DIGITS_LOST, "{channel:?} {opd} {shift}: {got}");
         }
     }
     // A thick film is grey: the fringes average out, and what is left is the sum without interference.
@@ -116,6 +119,6 @@ fn colours_are_those_of_the_spectrum() {
     let r = 0.04;
     let expected = r + (1.0 - r) * (1.0 - r) * r / (1.0 - r * r);
     for channel in thin_film::rgb(&film, 1.0, 3) {
-        assert_relative("thick", channel, expected, 1e-6);
+        assert_relative("thick", channel, expected, FRINGES_LEFT);
     }
 }

@@ -1,6 +1,9 @@
 //! Transformed cosines, SGGX and the factors of multiple scattering: norms and identities.
 
 use crate::terms::values::assert_relative;
+use crate::tolerance::{
+    DIGIT_LOST, FEW_ROUNDINGS, KINK_IN_A_SUM, MANY_ROUNDINGS, PLANE_CUT, SOBOL_16K, near,
+};
 use brdfbake::integrate::gauss;
 use brdfbake::integrate::sobol::Sobol;
 use brdfbake::math::frame;
@@ -63,7 +66,7 @@ fn form_factors_match_reference_values() {
             .iter()
             .map(|v| DVec3::new(v[0].as_f64().unwrap(), v[1].as_f64().unwrap(), v[2].as_f64().unwrap()))
             .collect();
-        assert_relative(&r[1], lobe.form_factor(&vertices).abs(), r[2].parse().unwrap(), 1e-14);
+        assert_relative(&r[1], lobe.form_factor(&vertices).abs(), r[2].parse().unwrap(), MANY_ROUNDINGS);
         count += 1;
     }
     assert_eq!(count, 7);
@@ -73,12 +76,12 @@ fn form_factors_match_reference_values() {
 fn a_polygon_round_the_horizon_is_clipped_to_a_whole() {
     // a big square below the horizon on one side: what is above is what counts
     let square = [[-1e9, -1e9], [1e9, -1e9], [1e9, 1e9], [-1e9, 1e9]].map(|[x, y]| DVec3::new(x, y, 1.0));
-    assert_relative("plane", Ltc::COSINE.form_factor(&square), 1.0, 1e-8);
+    assert_relative("plane", Ltc::COSINE.form_factor(&square), 1.0, PLANE_CUT);
     let half = [[0.0, -1e9], [1e9, -1e9], [1e9, 1e9], [0.0, 1e9]].map(|[x, y]| DVec3::new(x, y, 1.0));
-    assert_relative("half", Ltc::COSINE.form_factor(&half), 0.5, 1e-8);
+    assert_relative("half", Ltc::COSINE.form_factor(&half), 0.5, PLANE_CUT);
     // tilted so that a part is below: a triangle from z = 1 to z = -1
     let tilted = [DVec3::new(0.0, -1.0, 1.0), DVec3::new(0.0, 1.0, 1.0), DVec3::new(0.0, 0.0, -1.0)];
-    assert!(Ltc::COSINE.form_factor(&tilted).abs() < 1e-15, "edge on");
+    assert!(Ltc::COSINE.form_factor(&tilted).abs() < FEW_ROUNDINGS, "edge on");
 }
 
 #[test]
@@ -89,7 +92,7 @@ fn samples_have_the_density() {
             let expected = sphere(|w| lobe.density(w) * g(w));
             let n = 1 << 14;
             let mean = Sobol::new(7).points(n).map(|u| g(lobe.sample(u))).sum::<f64>() / f64::from(n);
-            assert!((mean - expected).abs() < 1e-3, "{lobe:?}: {mean} {expected}");
+            near!(mean, expected, SOBOL_16K, "{lobe:?}: {mean} {expected}");
         }
     }
 }
@@ -101,7 +104,7 @@ fn the_sheen_lobe_is_its_matrix() {
     let v = DVec3::new(sheen.a * w.x + sheen.b * w.z, sheen.a * w.y, w.z);
     let square = v.length_squared();
     let expected = v.z / PI * (sheen.a / square) * (sheen.a / square);
-    assert_relative("density", sheen.lobe().density(w), expected, 1e-13);
+    assert_relative("density", sheen.lobe().density(w), expected, DIGIT_LOST);
 }
 
 #[test]
@@ -111,7 +114,7 @@ fn sggx_projects_to_its_area() {
             let w = frame::spherical(theta, 0.3);
             // ∫ D max(0, w·m) = ∫ D |w·m|/2, as D is even; the kink is at a great circle
             let area = 0.5 * sphere(|m| sggx::d(sigma, m) * w.dot(m).abs());
-            assert_relative(&format!("{sigma} {theta}"), area, sggx::projected_area(sigma, w), 2e-4);
+            assert_relative(&format!("{sigma} {theta}"), area, sggx::projected_area(sigma, w), KINK_IN_A_SUM);
         }
     }
 }
@@ -119,11 +122,11 @@ fn sggx_projects_to_its_area() {
 #[test]
 fn nothing_is_lost_from_white() {
     for e in [0.3, 0.7, 1.0] {
-        assert_relative("slides", ms::colour_slides(1.0, e), 1.0, 1e-15);
-        assert_relative("series", ms::colour_series(1.0, e), 1.0, 1e-15);
-        assert_relative("Turquin", ms::turquin(1.0, e) * e, 1.0, 1e-15);
+        assert_relative("slides", ms::colour_slides(1.0, e), 1.0, FEW_ROUNDINGS);
+        assert_relative("series", ms::colour_series(1.0, e), 1.0, FEW_ROUNDINGS);
+        assert_relative("Turquin", ms::turquin(1.0, e) * e, 1.0, FEW_ROUNDINGS);
     }
     let white = ms::fdez_aguera(1.0, 0.5, 0.1);
-    assert_relative("Fdez-Aguera", white.single + white.multiple, 1.0, 1e-15);
+    assert_relative("Fdez-Aguera", white.single + white.multiple, 1.0, FEW_ROUNDINGS);
     assert_relative("guard", ms::colour_slides(1.0, 0.0), 1.0, 0.0);
 }

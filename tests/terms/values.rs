@@ -1,5 +1,6 @@
 //! Rows of `tests/values/*.csv`, and the comparison that every test uses.
 
+pub(crate) use crate::tolerance::assert_relative;
 use brdfbake::math::frame;
 use glam::DVec3;
 use serde_json::Value;
@@ -69,15 +70,6 @@ pub(crate) fn rows(file: &str, model: &str) -> Vec<Row> {
 
 /// Fails with the inputs unless |got − expected| ≤ bound·|expected|.
 #[track_caller]
-pub(crate) fn assert_relative(what: &str, got: f64, expected: f64, bound: f64) {
-    let error = (got - expected).abs();
-    assert!(
-        error <= bound * expected.abs(),
-        "{what}: got {got:e}, expected {expected:e}, relative error {:e} > {bound:e}",
-        error / expected.abs()
-    );
-}
-
 /// Cosines from 1e-8 to 1, dense at both ends.
 pub(crate) fn cosines() -> Vec<f64> {
     let mut cosines = vec![1e-8, 1e-6, 1e-4, 1e-3, 0.01, 1.0 - 1e-12, 1.0 - 1e-6, 1.0];
