@@ -9,7 +9,7 @@ use brdfbake::encode;
 use brdfbake::grid::{Axis, Grid};
 use brdfbake::models::MODELS;
 use brdfbake::pipeline::{self, PipelineError, Settings, Silent, TableRecord};
-use brdfbake::plan::{Plan, PlannedTable, TableRequest};
+use brdfbake::plan::{Output, Plan, PlannedTable, TableRequest};
 use brdfbake::recipe::{ENGINES, PRESETS};
 use brdfbake::tables::driver::{self, Options};
 use brdfbake::tables::spec::Request;
@@ -205,6 +205,12 @@ fn run(mut plan: Plan, full: bool) -> Result<Vec<TableRecord>, String> {
             .into_iter()
             .map(|mut t| {
                 t.bound = short(t.bound);
+                // MERL holds its own axes only: on short ones its table goes into another container
+                let channels = t.bound.spec.layout.channels.len();
+                t.outputs.retain(|o| o.shape(&t.bound.spec.grid, channels).check(o.encoder).is_ok());
+                if t.outputs.is_empty() {
+                    t.outputs.push(Output::parse("npy:float").unwrap());
+                }
                 t
             })
             .collect();
