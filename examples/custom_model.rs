@@ -5,8 +5,7 @@
 
 #![allow(clippy::print_stdout, reason = "an example")]
 
-use brdfbake::integrate::{Chart, View};
-use brdfbake::models::{Brdf, Sample};
+use brdfbake::models::{Brdf, Chart, Sample, View};
 use brdfbake::tables::integral::{Functional, integrate};
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;

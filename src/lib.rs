@@ -32,21 +32,49 @@ pub mod build;
 pub mod cancel;
 pub mod cite;
 #[cfg(feature = "cli")]
+#[cfg_attr(not(feature = "unstable"), doc(hidden))]
 pub mod cli;
 pub mod encode;
-pub mod functions;
 pub mod grid;
-pub mod integrate;
-pub mod math;
 pub mod models;
 pub mod pipeline;
 pub mod plan;
 pub mod recipe;
-pub mod report;
+#[cfg(feature = "scene")]
 pub mod scene;
 pub mod tables;
-pub mod terms;
 pub mod verify;
+
+// Rooms that are no interface and may change in any release; tests and benchmarks open them.
+#[cfg(feature = "unstable")]
+pub mod functions;
+#[cfg(not(feature = "unstable"))]
+#[allow(dead_code, unreachable_pub, unused_imports, reason = "open with the feature `unstable`")]
+mod functions;
+
+#[cfg(feature = "unstable")]
+pub mod integrate;
+#[cfg(not(feature = "unstable"))]
+#[allow(dead_code, unreachable_pub, unused_imports, reason = "open with the feature `unstable`")]
+mod integrate;
+
+#[cfg(feature = "unstable")]
+pub mod math;
+#[cfg(not(feature = "unstable"))]
+#[allow(dead_code, unreachable_pub, unused_imports, reason = "open with the feature `unstable`")]
+mod math;
+
+#[cfg(feature = "unstable")]
+pub mod report;
+#[cfg(not(feature = "unstable"))]
+#[allow(dead_code, unreachable_pub, unused_imports, reason = "open with the feature `unstable`")]
+mod report;
+
+#[cfg(feature = "unstable")]
+pub mod terms;
+#[cfg(not(feature = "unstable"))]
+#[allow(dead_code, unreachable_pub, unused_imports, reason = "open with the feature `unstable`")]
+mod terms;
 
 pub use pipeline::bake;
 

@@ -32,6 +32,7 @@ mod place;
 mod probe;
 pub(crate) mod request;
 pub(crate) mod resolve;
+#[cfg(feature = "scene")]
 pub mod scene;
 pub(crate) mod sizing;
 mod table;
