@@ -21,6 +21,7 @@
 //! | 7 | [`plan`] | requests of any asker to one resolved job, and what its bytes depend on |
 //! | 8 | [`recipe`] | the text of recipes to requests, faults to lines; presets and engines |
 //! | 9 | [`pipeline`] | plan, bake, verify, encode, write |
+//! | 9 | [`guide`] | the pages of the manual, and how engines use their tables |
 //! | 10 | [`build`] | recipes as a step of a Cargo build |
 //! | 11 | `cli` | one file a verb (feature `cli`) |
 //!
@@ -36,6 +37,7 @@ pub mod cli;
 pub mod encode;
 pub mod functions;
 pub mod grid;
+pub mod guide;
 pub mod integrate;
 pub mod math;
 pub mod models;

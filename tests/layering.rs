@@ -20,6 +20,7 @@ const RANKS: &[(&str, u32)] = &[
     ("plan", 7),
     ("recipe", 8),
     ("pipeline", 9),
+    ("guide", 9),
     ("build", 10),
     ("cli", 11),
 ];

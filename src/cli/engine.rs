@@ -24,7 +24,7 @@ pub(super) fn report(engine: &Engine, outcome: &Outcome) {
         if let Some(read) = record.as_read.as_ref().or(record.reconstruction.as_ref()) {
             let whole = [read.whole.largest.value, read.whole.mean];
             let practical = read.practical.as_ref().map(|p| [p.largest.value, p.mean]);
-            text.push_str(&format!("\n    as the engine reads it: {}", errors(whole, practical)));
+            text.push_str(&format!("\n    as the engine reads it, between the texels: {}", errors(whole, practical)));
             if let Some(shipped) = &file.shipped {
                 text.push_str(&format!(
                     "\n    the shipped file: {}",
@@ -38,7 +38,7 @@ pub(super) fn report(engine: &Engine, outcome: &Outcome) {
 
 fn errors(whole: [f64; 2], practical: Option<[f64; 2]>) -> String {
     let both = |[largest, mean]: [f64; 2]| format!("{largest:.1e} at most, {mean:.1e} in the mean");
-    let practical = practical.map_or_else(String::new, |p| format!("; practical domain {}", both(p)));
+    let practical = practical.map_or_else(String::new, |p| format!("; where mu >= 0.05 and roughness >= 0.09, {}", both(p)));
     format!("{}{practical}", both(whole))
 }
 

@@ -9,6 +9,7 @@ pub mod eval;
 pub mod exit;
 pub mod fit;
 pub mod golden;
+pub mod guide;
 pub mod inspect;
 mod interrupt;
 pub mod laws;
@@ -62,6 +63,8 @@ enum Verb {
     List(list::Args),
     /// Describe a model, function, table, preset, engine, law or quantity.
     Describe(describe::Args),
+    /// Print a page of the guide: recipes, axes, formats, one engine, and more.
+    Guide(guide::Args),
 }
 
 /// Runs a parsed command. `cancel` is set when the user interrupts.
@@ -82,6 +85,7 @@ pub fn run(cli: Cli, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         Verb::Fit(args) => pool(None)?.install(|| fit::run(&args, cancel)),
         Verb::List(args) => list::run(&args),
         Verb::Describe(args) => describe::run(&args),
+        Verb::Guide(args) => guide::run(&args),
     }
 }
 
