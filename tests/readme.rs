@@ -222,7 +222,11 @@ fn every_page_is_listed_and_can_be_read_in_a_terminal() {
         assert!(!text.contains("<!--") && !text.contains("```"), "{}: marks are left", topic.id);
         let code: Vec<String> = topic.text.lines().map(|l| format!("    {l}")).collect();
         for line in text.lines().filter(|l| l.chars().count() > LINE) {
-            assert!(code.iter().any(|c| c == line), "{}: a printed line is longer than {LINE}: {line}", topic.id);
+            assert!(
+                code.iter().any(|c| c == line),
+                "{}: a printed line is longer than {LINE}: {line}",
+                topic.id
+            );
         }
         let mut code = false;
         for line in topic.text.lines() {

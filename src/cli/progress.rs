@@ -96,7 +96,8 @@ impl Legend {
     /// The text of an event, if it deserves one.
     fn line(&self, event: &Event<'_>) -> Option<String> {
         let text = line(event)?;
-        let reads = matches!(event, Event::TableFinished { reconstruction, .. } if !reconstruction.is_empty());
+        let reads =
+            matches!(event, Event::TableFinished { reconstruction, .. } if !reconstruction.is_empty());
         if !reads || self.given.swap(true, Ordering::Relaxed) {
             return Some(text);
         }

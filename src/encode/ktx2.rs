@@ -248,7 +248,7 @@ pub(super) fn storage(format: u32) -> Option<(Storage, usize)> {
         .find(|&(s, n)| vk_format(s, n) == format)
 }
 
-/// Bytes of the word whose byte order matters; of blocks there is none.
+/// Size in bytes of the words that depend on byte order; 1 for block-compressed formats, as the specification has it.
 const fn type_size(storage: Storage) -> u32 {
     match storage {
         _ if storage.is_block() => 1,

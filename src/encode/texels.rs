@@ -256,7 +256,7 @@ fn name(planes: &mut Vec<Plane>, p: &crate::grid::Provenance, told: &[f64]) {
         let value = told.get(i).copied().unwrap_or(usual);
         plane.values.iter().all(|&v| (plane.sample.decode(v, [0.0, 1.0]) - value).abs() == 0.0)
     });
-    // a pixel with more components than a table would get is of another make
+    // more components than the writer gives a table of this many channels: another program wrote the file
     if !filled && planes.len() != n && !(n == 2 && planes.len() == 3) {
         return;
     }

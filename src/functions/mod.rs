@@ -134,7 +134,7 @@ impl Angles {
 /// How far beyond pi or 2 pi an angle may be: what rounding to four decimals adds.
 const ROUNDING: f64 = 2e-5;
 
-/// An angle that is none, or more than a turn: degrees, most likely.
+/// An angle that is not finite or exceeds a full turn, as one in degrees would.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
     "{column} = {} outside [{}, {}]: angles are in radians",
@@ -197,7 +197,7 @@ pub enum FunctionError {
         /// What the column means to the function.
         meaning: &'static str,
     },
-    /// An angle that is none.
+    /// An angle outside its range.
     #[error(transparent)]
     Angle(#[from] AngleError),
     /// A parameter that the function does not declare: a fault of its file.

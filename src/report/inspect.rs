@@ -172,7 +172,14 @@ fn quality(lines: &mut Lines, p: &Provenance) {
         for c in &t.choices {
             lines.item("", &format!("{} texels, whole domain: {}", c.texels, spread(&c.whole)));
             if let Some(practical) = &c.practical {
-                lines.item("", &format!("{} texels, practical (mu >= 0.05, roughness >= 0.09): {}", c.texels, spread(practical)));
+                lines.item(
+                    "",
+                    &format!(
+                        "{} texels, practical (mu >= 0.05, roughness >= 0.09): {}",
+                        c.texels,
+                        spread(practical)
+                    ),
+                );
             }
         }
     }
