@@ -19,7 +19,7 @@ pub fn engine_page(engine: &Engine, level: usize) -> Result<String, RecipeError>
     for (file, table) in engine.files.iter().zip(&plan.tables) {
         text.push_str(&format!(
             "| `{}` | {} | {} | {} | `{}` |\n",
-            table.file.as_deref().unwrap_or(&table.name),
+            table.files().join("`, `"),
             file.replaces,
             texels(table),
             channels(table),
