@@ -1,7 +1,8 @@
 //! The page of an engine: what the registry knows of its tables, then how to put them in place.
 
 use crate::grid::{Axis, Texel};
-use crate::recipe::{Engine, PlannedTable, RecipeError};
+use crate::plan::PlannedTable;
+use crate::recipe::{Engine, RecipeError};
 
 /// The page of an engine in Markdown: files, axes and channels from its recipe, what each replaces and how it is read from its
 /// entry, and the text beside the recipe. Headings are `level` deep.
