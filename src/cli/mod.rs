@@ -15,6 +15,7 @@ mod interrupt;
 pub mod laws;
 pub mod limits;
 pub mod list;
+pub mod map;
 pub mod output;
 pub mod plot;
 pub mod progress;
@@ -45,6 +46,8 @@ enum Verb {
     Inspect(inspect::Args),
     /// Compare two images or two output folders.
     Diff(diff::Args),
+    /// Filter normal and roughness maps: levels of lobes fitted to what they stand for, with their errors.
+    Map(map::Args),
     /// Check that an output folder holds what its manifest says.
     Verify(verify::Args),
     /// Compare a fresh bake with committed outputs, or commit them.
@@ -76,6 +79,7 @@ pub fn run(cli: Cli, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         Verb::Bake(args) => bake::run(&args, cancel),
         Verb::Inspect(args) => inspect::run(&args, cancel),
         Verb::Diff(args) => diff::run(&args, cancel),
+        Verb::Map(args) => map::run(&args, cancel),
         Verb::Verify(args) => verify::run(&args),
         Verb::Golden(args) => golden::run(&args, cancel),
         Verb::Eval(args) => eval::run(&args, cancel),

@@ -98,7 +98,7 @@ const fn top(storage: Storage, component: usize) -> f64 {
     clippy::cast_sign_loss,
     reason = "codes are integers below 2^16 or floats of the storage"
 )]
-fn put(storage: Storage, codes: &[f64], bytes: &mut Vec<u8>) {
+pub(super) fn put(storage: Storage, codes: &[f64], bytes: &mut Vec<u8>) {
     match storage {
         Storage::Half => codes.iter().for_each(|&v| bytes.extend(f16::from_f64(v).to_le_bytes())),
         Storage::Float => codes.iter().for_each(|&v| bytes.extend((v as f32).to_le_bytes())),
