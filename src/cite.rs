@@ -170,6 +170,8 @@ cites! {
     NOCEDAL_WRIGHT_2006 = "NocedalWright2006", "Nocedal, Wright: Numerical Optimization, second edition", 2006, "https://doi.org/10.1007/978-0-387-40065-5";
     /// Olano and Baker, normal maps that filter.
     OLANO_BAKER_2010 = "OlanoBaker2010", "Olano, Baker: LEAN Mapping, I3D", 2010, "https://doi.org/10.1145/1730804.1730834";
+    /// OpenPBR, a surface model for interchange.
+    OPENPBR = "OpenPBR", "Academy Software Foundation: OpenPBR Surface specification, version 1.1", 2024, "https://academysoftwarefoundation.github.io/OpenPBR/";
     /// Oren and Nayar, rough diffuse surfaces.
     OREN_NAYAR_1994 = "OrenNayar1994", "Oren, Nayar: Generalization of Lambert's Reflectance Model, SIGGRAPH", 1994, "https://doi.org/10.1145/192161.192213";
     /// Phong, highlights by the mirror direction.

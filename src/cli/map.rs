@@ -5,11 +5,14 @@ use super::{Exit, Failure, output};
 use crate::cancel::Cancel;
 use crate::encode::Storage;
 use crate::encode::mips::{CONTAINERS, storages};
-use crate::maps::{self, Centre, Convention, Effort, RULES, Shape, rules};
+use crate::functions::conversion::{By, CONVERSIONS};
+use crate::maps::{self, Centre, Convention, Effort, Objective, RULES, Shape, rules};
 use crate::math::figures::short;
 use crate::math::nearest::nearest;
 use crate::picture::{Space, Wrap};
-use crate::pipeline::map::{Input, MapError, MapOutcome, MapRequest, Output, RoughnessInput, run as filter};
+use crate::pipeline::map::{
+    FromLobe, Input, MapError, MapOutcome, MapRequest, Output, RoughnessInput, run as filter,
+};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::path::PathBuf;
@@ -33,6 +36,18 @@ pub struct Args {
     /// The roughness is coded as sRGB, against every format of materials.
     #[arg(long)]
     srgb: bool,
+    /// The codes tell of another lobe: a parametrisation of one number of `describe to-ggx`, such as blinn-phong.
+    #[arg(long, value_name = "ID", requires = "range")]
+    from: Option<String>,
+    /// Numbers that the codes 0 and 1 stand for.
+    #[arg(long, value_name = "LO,HI", value_delimiter = ',', requires = "from")]
+    range: Vec<f64>,
+    /// The codes are spread over the logarithm of the number.
+    #[arg(long, requires = "from")]
+    log: bool,
+    /// Take the GGX lobe of the same peak, not the nearest one.
+    #[arg(long, requires = "from")]
+    formula: bool,
     /// Factor of the roughness (roughnessFactor of glTF); what is written is for a factor of 1.
     #[arg(long, value_name = "NUMBER", default_value_t = 1.0)]
     factor: f64,
@@ -75,6 +90,9 @@ pub struct Args {
     /// Reference mode: every facet, 16384 nodes, milliseconds a texel.
     #[arg(long)]
     exact: bool,
+    /// What the fit makes small: D of the distributions of normals, or the error of the reflected light in four views (slow).
+    #[arg(long, value_enum, default_value = "normals")]
+    objective: Aim,
     /// Containers: ktx2, dds, exr, png.
     #[arg(short, long, value_name = "LIST", value_delimiter = ',', default_values = ["ktx2"])]
     format: Vec<String>,
@@ -111,6 +129,12 @@ enum WrapMode {
     Repeat,
     Mirror,
     Clamp,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Aim {
+    Normals,
+    Reflected,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -160,6 +184,9 @@ fn request(args: &Args) -> Result<MapRequest, Failure> {
     if args.normals == Normals::Fit && !fits {
         return Err(Failure::usage(format!("--normals fit: rule {} stands about the mean normal", rule.id)));
     }
+    if args.objective == Aim::Reflected && !fits {
+        return Err(Failure::usage(format!("--objective reflected: rule {} is no search", rule.id)));
+    }
     if !args.normal_scale.is_finite() || args.normal_scale < 0.0 {
         return Err(Failure::usage(format!("--normal-scale {} must not be negative", args.normal_scale)));
     }
@@ -169,13 +196,18 @@ fn request(args: &Args) -> Result<MapRequest, Failure> {
     Ok(MapRequest {
         name: args.name.clone(),
         normal: args.normal.as_ref().map(|path| normal(args, path)).transpose()?,
-        roughness: roughness(args),
+        roughness: roughness(args)?,
         factor: args.factor,
         filter: maps::Settings {
             rule,
             centre: if args.normals == Normals::Fit { Centre::Free } else { Centre::Mean },
             shape: if args.anisotropic { Shape::Anisotropic } else { Shape::Isotropic },
             effort: if args.exact { Effort::Exact } else { Effort::Fast },
+            objective: if args.objective == Aim::Reflected {
+                Objective::Reflected
+            } else {
+                Objective::Normals
+            },
         },
         outputs: args.format.iter().map(|id| format(args, id)).collect::<Result<_, _>>()?,
         check: args.check,
@@ -212,8 +244,9 @@ fn normal(args: &Args, path: &std::path::Path) -> Result<Input, Failure> {
     })
 }
 
-fn roughness(args: &Args) -> RoughnessInput {
-    match args.roughness.parse::<f64>() {
+fn roughness(args: &Args) -> Result<RoughnessInput, Failure> {
+    let from = args.from.as_deref().map(|id| from(args, id)).transpose()?;
+    Ok(match args.roughness.parse::<f64>() {
         Ok(r) => RoughnessInput::Constant(if args.gloss { 1.0 - r } else { r }),
         Err(_) => RoughnessInput::Image {
             path: PathBuf::from(&args.roughness),
@@ -221,8 +254,23 @@ fn roughness(args: &Args) -> RoughnessInput {
             space: if args.srgb { Space::Srgb } else { Space::Linear },
             gloss: args.gloss,
             single: args.single,
+            from,
         },
-    }
+    })
+}
+
+/// What the codes tell of.
+fn from(args: &Args, id: &str) -> Result<FromLobe, Failure> {
+    let usable = || CONVERSIONS.iter().filter(|c| c.numbers.len() == 1);
+    let conversion = usable().find(|c| c.id == id).ok_or_else(|| {
+        let ids: Vec<&str> = usable().map(|c| c.id).collect();
+        Failure::usage(format!("--from {id}: parametrisations of one number are {}", ids.join(", ")))
+    })?;
+    let [lo, hi] = args.range[..] else {
+        return Err(Failure::usage("--range: two numbers are needed, as LO,HI"));
+    };
+    let by = if args.formula { By::Formula } else { By::Nearest };
+    Ok(FromLobe { conversion, range: [lo, hi], log: args.log, by })
 }
 
 /// A container with its storages.

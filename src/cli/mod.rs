@@ -47,7 +47,7 @@ enum Verb {
     /// Compare two images or two output folders.
     Diff(diff::Args),
     /// Filter normal and roughness maps: levels of lobes fitted to what they stand for, with their errors.
-    Map(map::Args),
+    Map(Box<map::Args>),
     /// Check that an output folder holds what its manifest says.
     Verify(verify::Args),
     /// Compare a fresh bake with committed outputs, or commit them.

@@ -3,6 +3,7 @@
 //! A function turns parameters, and directions if it uses any, into one number. Models are not functions: they have a
 //! sampler, a density and laws. To add a function: write a [`FunctionInfo`] into the file of its family; that is all.
 
+pub mod conversion;
 pub mod energy;
 pub mod evaluate;
 pub mod filtering;
@@ -43,6 +44,7 @@ pub static FAMILIES: &[&[FunctionInfo]] = &[
     media::ALL,
     phase::ALL,
     filtering::ALL,
+    conversion::ALL,
 ];
 
 /// Everything that is known of a function.

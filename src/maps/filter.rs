@@ -8,7 +8,8 @@
 use super::fit::{Centre, Effort, Fitter, Shape};
 use super::footprint::{Footprint, MOST_FACETS};
 use super::lobe::{Facet, Lobe};
-use super::rules::Rule;
+use super::reflected;
+use super::rules::{Method, Rule};
 use super::surface::Surface;
 use crate::cancel::{Cancel, Cancelled};
 use crate::picture::{Coverage, halved};
@@ -30,6 +31,17 @@ pub struct Settings {
     pub shape: Shape,
     /// How much work.
     pub effort: Effort,
+    /// What is made small by the fit.
+    pub objective: Objective,
+}
+
+/// What the fit makes small.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Objective {
+    /// D of the distributions of normals.
+    Normals,
+    /// The error of the reflected light in four views: see [`super::reflected`].
+    Reflected,
 }
 
 /// One level of lobes.
@@ -201,7 +213,7 @@ fn first(surface: &Surface) -> Level {
             roughness,
             roughness_max: roughness,
             angle: 0.0,
-            distance: 0.0,
+            distance: surface.residual.at(i),
             doubt: 0.0,
             at_limit: false,
         }
@@ -258,7 +270,10 @@ impl Job<'_> {
             footprint = footprint.merged(most);
         }
         let Settings { rule, centre, shape, .. } = *self.settings;
-        let fitted = rule.apply(fitter, &footprint, centre, shape);
+        let mut fitted = rule.apply(fitter, &footprint, centre, shape);
+        if self.settings.objective == Objective::Reflected && matches!(rule.method, Method::Fit) {
+            fitted = reflected::fit(&footprint, &fitted.lobe, centre, shape);
+        }
         let lobe = fitted.lobe;
         let n = lobe.normal;
         let texel = Texel {

@@ -2,7 +2,7 @@
 //!
 //! Nearest means least D, half the integral of the absolute difference of the two densities over the upper hemisphere
 //! (0 the same, 1 disjoint). GGX has no variance, so that rules which add variances miss it: on a twentieth of scratches
-//! they are three times worse than doing nothing. See [`super::nodes`] for the integral.
+//! they are three times worse than doing nothing. The integral is that of `nodes`.
 //!
 //! The search begins at two places: a robust mean of the slopes (facets count less the farther they lie, as in the likelihood of
 //! Student's t, of which GGX is a case), and the densest facet; it goes down from the better one, or both. It ends on

@@ -10,11 +10,12 @@ pub mod fit;
 pub mod footprint;
 pub mod lobe;
 mod nodes;
+pub mod reflected;
 pub mod rules;
 pub mod signs;
 pub mod surface;
 
-pub use filter::{FilterError, Level, Settings, Texel, filter};
+pub use filter::{FilterError, Level, Objective, Settings, Texel, filter};
 pub use fit::{Centre, Effort, Fitted, Fitter, Shape};
 pub use footprint::Footprint;
 pub use lobe::{Facet, Lobe};

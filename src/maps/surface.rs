@@ -32,6 +32,8 @@ pub struct Surface {
     pub normals: Field<[f32; 3]>,
     /// Roughness r = √α, in [0, 1].
     pub roughness: Field<f32>,
+    /// D between the lobes that the map told of and these, where it told of lobes of another kind.
+    pub residual: Field<f32>,
 }
 
 impl Surface {

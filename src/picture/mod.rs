@@ -31,8 +31,6 @@ pub struct Picture {
 pub struct Plane {
     /// Name: `R`, `G`, `B`, `A`, `Y`, or as in the file.
     pub name: String,
-    /// Bits of a code; 0 for floats.
-    pub bits: u32,
     /// Values, rows from the top.
     pub values: Vec<f32>,
 }

@@ -3,7 +3,7 @@
 use super::{MAX_PIXELS, Picture, PictureError, Plane};
 use image::codecs::jpeg::JpegDecoder;
 use image::codecs::png::PngDecoder;
-use image::{ExtendedColorType, ImageDecoder, Limits};
+use image::{ImageDecoder, Limits};
 use std::io::Cursor;
 
 /// How these files begin.
@@ -36,7 +36,7 @@ pub fn read_bytes(bytes: &[u8]) -> Result<Picture, PictureError> {
 fn planes(mut decoder: impl ImageDecoder, format: &'static str) -> Result<Picture, PictureError> {
     let (w, h) = decoder.dimensions();
     let (width, height) = (w as usize, h as usize);
-    let pixels = width.checked_mul(height).unwrap_or(usize::MAX);
+    let pixels = width.saturating_mul(height);
     if pixels == 0 || pixels > MAX_PIXELS {
         return Err(PictureError::Pixels { width, height });
     }
@@ -44,8 +44,7 @@ fn planes(mut decoder: impl ImageDecoder, format: &'static str) -> Result<Pictur
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_ALLOC);
     decoder.set_limits(limits).map_err(library)?;
-    // a grey of fewer bits, or a palette, has been unfolded to 8; what is told is what was in the file
-    let stored = decoder.original_color_type();
+    // greys of fewer bits and palettes are unfolded to 8
     let colour = decoder.color_type();
     let n = usize::from(colour.channel_count());
     let size = usize::from(colour.bytes_per_pixel()) / n;
@@ -59,20 +58,9 @@ fn planes(mut decoder: impl ImageDecoder, format: &'static str) -> Result<Pictur
     };
     let plane = |(c, name): (usize, &&str)| Plane {
         name: (*name).to_owned(),
-        bits: bits(stored, size),
         values: data.chunks_exact(size).skip(c).step_by(n).map(code).collect(),
     };
     Ok(Picture { width, height, planes: names.iter().enumerate().map(plane).collect() })
-}
-
-fn bits(stored: ExtendedColorType, size: usize) -> u32 {
-    match stored {
-        ExtendedColorType::L1 | ExtendedColorType::Rgb1 => 1,
-        ExtendedColorType::L2 => 2,
-        ExtendedColorType::L4 => 4,
-        _ if size == 2 => 16,
-        _ => 8,
-    }
 }
 
 fn code(sample: &[u8]) -> f32 {

@@ -14,7 +14,12 @@ pub enum Wrap {
 impl Wrap {
     /// The texel of a line of `n` that stands at `i`.
     #[must_use]
-    #[allow(clippy::cast_possible_wrap, clippy::cast_sign_loss, reason = "a line has at most 2^26 texels")]
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_possible_wrap,
+        clippy::cast_sign_loss,
+        reason = "a line has at most 2^26 texels"
+    )]
     pub fn at(self, i: i64, n: usize) -> usize {
         let n = n.max(1) as i64;
         let place = match self {
@@ -55,7 +60,7 @@ impl super::Plane {
                 values.push((top * (1.0 - v) + bottom * v) as f32);
             }
         }
-        Self { name: self.name.clone(), bits: self.bits, values }
+        Self { name: self.name.clone(), values }
     }
 }
 
@@ -73,7 +78,7 @@ mod tests {
 
     #[test]
     fn borders_mix_with_what_lies_beyond() {
-        let plane = crate::picture::Plane { name: "Y".into(), bits: 8, values: vec![0.0, 1.0] };
+        let plane = crate::picture::Plane { name: "Y".into(), values: vec![0.0, 1.0] };
         let wide = |wrap| plane.resampled([2, 1], [4, 1], [wrap, Wrap::Clamp]).values;
         assert_eq!(wide(Wrap::Clamp), [0.0, 0.25, 0.75, 1.0]);
         assert_eq!(wide(Wrap::Repeat), [0.25, 0.25, 0.75, 0.75]);

@@ -34,9 +34,11 @@ pub fn inspect(name: &str, image: &Image) -> String {
         }
         Some(Claim::Unknown { text, fault }) => {
             planes(&mut lines, image, None);
-            lines.plain("The file has brdfbake metadata that this version does not understand:");
-            lines.item("reason", fault);
-            lines.item("text", &text.chars().take(2000).collect::<String>());
+            if !super::inspect_map::map(&mut lines, text) {
+                lines.plain("The file has brdfbake metadata that this version does not understand:");
+                lines.item("reason", fault);
+                lines.item("text", &text.chars().take(2000).collect::<String>());
+            }
         }
         None => {
             planes(&mut lines, image, None);

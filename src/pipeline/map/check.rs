@@ -6,7 +6,9 @@ use super::output::{Kind, Map};
 use super::{MapError, MapRequest};
 use crate::cancel::Cancel;
 use crate::encode::mips::{self, Mips};
-use crate::maps::{Centre, Effort, Facet, Fitter, Footprint, Level, Lobe, RULES, Surface, Texel, rules};
+use crate::maps::{
+    Centre, Effort, Facet, Fitter, Footprint, Level, Lobe, Objective, RULES, Surface, Texel, reflected, rules,
+};
 use crate::picture::{Coverage, halved};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -76,7 +78,14 @@ pub(super) fn measure(
             let facets = gather(surface, &cover, texel % level.size[0], texel / level.size[0]);
             let Some(footprint) = Footprint::new(facets) else { return Ok(None) };
             let own = &level.texels[*texel];
-            let mut distance = |lobe: &Lobe| fitter.distance(lobe, &footprint).0;
+            let light = request.filter.objective == Objective::Reflected;
+            let mut distance = |lobe: &Lobe| {
+                if light {
+                    reflected::distance(lobe, &footprint)
+                } else {
+                    fitter.distance(lobe, &footprint).0
+                }
+            };
             let before = distance(&own.lobe());
             let after = distance(&stored.lobe(*texel, own));
             let rules = if request.compare { compare(fitter, &footprint, request) } else { Vec::new() };

@@ -3,6 +3,7 @@
 use super::{MapError, MapRequest};
 use crate::cancel::Cancel;
 use crate::encode::read;
+use crate::functions::conversion::{By, Conversion};
 use crate::maps::surface;
 use crate::maps::{Convention, Field, Surface, TexelFault};
 use crate::picture::{self, Picture, Plane, Space, Wrap};
@@ -43,7 +44,64 @@ pub enum RoughnessInput {
         gloss: bool,
         /// True to write the roughness alone, and not the other channels of the image.
         single: bool,
+        /// What the codes tell of, if it is no roughness.
+        from: Option<FromLobe>,
     },
+}
+
+/// Codes of lobes of another kind.
+#[derive(Debug, Clone, Copy)]
+pub struct FromLobe {
+    /// The parametrisation, of one number.
+    pub conversion: &'static Conversion,
+    /// Numbers of the codes 0 and 1.
+    pub range: [f64; 2],
+    /// True if the codes are spread over the logarithm.
+    pub log: bool,
+    /// How the lobe becomes GGX.
+    pub by: By,
+}
+
+impl PartialEq for FromLobe {
+    fn eq(&self, other: &FromLobe) -> bool {
+        let key = |f: &FromLobe| (f.conversion.id, f.range.map(f64::to_bits), f.log, f.by);
+        key(self) == key(other)
+    }
+}
+
+impl FromLobe {
+    /// Roughness and D of a code.
+    #[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]
+    fn convert(&self, code: f32) -> [f32; 2] {
+        let [lo, hi] = self.range;
+        let c = f64::from(code);
+        let number = if self.log { lo * libm::pow(hi / lo, c) } else { lo + (hi - lo) * c };
+        let found = self.conversion.convert([number.clamp(lo.min(hi), lo.max(hi)); 2], self.by);
+        [found.alphas[0].min(1.0).sqrt() as f32, found.distance as f32]
+    }
+
+    /// The same of many codes, each of them once.
+    fn convert_all(&self, codes: &[f32]) -> Vec<[f32; 2]> {
+        let mut keys: Vec<u32> = codes.iter().map(|c| c.to_bits()).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        let found: Vec<[f32; 2]> = keys.par_iter().map(|k| self.convert(f32::from_bits(*k))).collect();
+        let at = |c: &f32| keys.binary_search(&c.to_bits()).map_or([0.0; 2], |i| found[i]);
+        codes.iter().map(at).collect()
+    }
+
+    fn check(&self) -> Result<(), MapError> {
+        let (_, [least, most]) = self.conversion.numbers[0];
+        let wrong = |v: &&f64| !(least..=most).contains(*v) || (self.log && **v <= 0.0);
+        match self.range.iter().find(wrong) {
+            None => Ok(()),
+            Some(v) => Err(MapError::Number {
+                what: "range",
+                got: *v,
+                allowed: "what the parametrisation takes (describe to-ggx; above 0 if logarithmic)",
+            }),
+        }
+    }
 }
 
 /// What was read.
@@ -67,16 +125,30 @@ pub(super) fn read(request: &MapRequest, cancel: &Cancel) -> Result<Sources, Map
         Ok(picture)
     };
     let (mut packed, mut size) = (None, None);
+    let mut residual = Field::Constant(0.0);
     let roughness = match &request.roughness {
         RoughnessInput::Constant(r) if !(0.0..=1.0).contains(r) => {
             return Err(MapError::Number { what: "roughness", got: *r, allowed: "[0, 1]" });
         }
         #[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]
         RoughnessInput::Constant(r) => Field::Constant((*r * request.factor) as f32),
-        RoughnessInput::Image { path, channel, space, gloss, single } => {
+        RoughnessInput::Image { path, channel, space, gloss, single, from } => {
             let picture = load("roughness", path)?;
             let plane = find(&picture, path, channel)?;
-            let field = roughness(plane, &picture, path, (*space, *gloss, request.factor))?;
+            let field = match from {
+                None => roughness(plane, &picture, path, (*space, *gloss, request.factor))?,
+                Some(from) => {
+                    from.check()?;
+                    if request.factor < 1.0 {
+                        let allowed = "1, where the codes tell of another lobe";
+                        return Err(MapError::Number { what: "factor", got: request.factor, allowed });
+                    }
+                    let codes = roughness(plane, &picture, path, (*space, *gloss, 1.0))?;
+                    let found = from.convert_all(&codes);
+                    residual = Field::Map(found.iter().map(|f| f[1]).collect());
+                    found.iter().map(|f| f[0]).collect()
+                }
+            };
             size = Some(([picture.width, picture.height], path.clone()));
             let index = picture.planes.iter().position(|p| p.name == plane.name).unwrap_or(0);
             packed = (!single && picture.planes.len() > 1).then_some((picture, index));
@@ -97,7 +169,7 @@ pub(super) fn read(request: &MapRequest, cancel: &Cancel) -> Result<Sources, Map
         }
     };
     let Some((size, _)) = size else { return Err(MapError::Nothing) };
-    Ok(Sources { surface: Surface { size, normals, roughness }, packed, files })
+    Ok(Sources { surface: Surface { size, normals, roughness, residual }, packed, files })
 }
 
 /// Opens an image of any kind that is read, and tells the hash of its bytes.
@@ -117,7 +189,6 @@ fn open(path: &Path, cancel: &Cancel) -> Result<(Picture, String), MapError> {
     #[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]
     let plane = |p: &read::Plane| Plane {
         name: p.name.clone(),
-        bits: 0,
         values: p.values.iter().map(|v| *v as f32).collect(),
     };
     Ok((Picture { width, height, planes: image.channels.iter().map(plane).collect() }, hash))

@@ -9,7 +9,7 @@ mod output;
 mod record;
 
 pub use check::{Measured, RuleMeasured};
-pub use input::{Input, RoughnessInput};
+pub use input::{FromLobe, Input, RoughnessInput};
 pub use output::Output;
 pub use record::{LevelRecord, MapRecord, Place};
 

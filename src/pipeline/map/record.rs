@@ -6,7 +6,7 @@ use super::output::File;
 use super::{MapRequest, RoughnessInput};
 use crate::encode::Storage;
 use crate::grid::Channel;
-use crate::maps::{Centre, Effort, Level, Shape};
+use crate::maps::{Centre, Effort, Level, Objective, Shape};
 use serde::Serialize;
 
 /// Version of this layout.
@@ -43,6 +43,8 @@ pub struct MapRecord {
     pub shape: &'static str,
     /// `fast` or `exact`.
     pub effort: &'static str,
+    /// `normals` or `reflected`: what the fit makes small, and what `distance` is.
+    pub objective: &'static str,
     /// Levels, the largest first.
     pub levels: Vec<LevelRecord>,
     /// Texels that the lobe is farthest from, of all levels.
@@ -147,13 +149,27 @@ pub(super) fn record(
         normals: if filter.centre == Centre::Free { "fit" } else { "mean" },
         shape: if filter.shape == Shape::Anisotropic { "anisotropic" } else { "isotropic" },
         effort: if filter.effort == Effort::Exact { "exact" } else { "fast" },
+        objective: if filter.objective == Objective::Reflected { "reflected" } else { "normals" },
         levels: levels_told,
         worst: worst(levels),
     };
     let text = serde_json::to_string(&record).unwrap_or_default();
-    let asked = format!("{text}{:?}{:?}{:?}", request.normal, request.roughness, request.outputs);
+    let asked = format!("{text}{}{:?}", options(request), request.outputs);
     record.recipe.hash = blake3::hash(asked.as_bytes()).to_hex().to_string();
     record
+}
+
+/// What was asked of the inputs, without their paths: their bytes are in the record.
+fn options(request: &MapRequest) -> String {
+    let normal = request.normal.as_ref().map(|n| (&n.channels, n.convention, n.signed, n.wrap, n.resample));
+    let roughness = match &request.roughness {
+        RoughnessInput::Constant(r) => format!("{r}"),
+        RoughnessInput::Image { channel, space, gloss, single, from, path: _ } => {
+            let from = from.map(|f| (f.conversion.id, f.range, f.log, f.by));
+            format!("{channel} {space:?} {gloss} {single} {from:?}")
+        }
+    };
+    format!("{normal:?}{roughness}")
 }
 
 fn level(level: &Level, measured: Option<Measured>) -> LevelRecord {

@@ -1,0 +1,7 @@
+//! Parameter maps: lobes, pictures, files, conversions.
+
+mod conversions;
+mod counted;
+mod footprints;
+mod map_files;
+mod map_pictures;
