@@ -136,7 +136,7 @@ mod tests {
     #[test]
     fn short_normals_are_made_unit() {
         let flat = Convention::default().decode([0.5, 0.5, 0.99]).unwrap();
-        assert_eq!(flat, [0.0, 0.0, 1.0]);
+        assert!(flat[0].abs() < 1e-7 && flat[1].abs() < 1e-7 && (flat[2] - 1.0).abs() < 1e-7, "{flat:?}");
     }
 
     #[test]
