@@ -1,6 +1,9 @@
 //! Other lobes as GGX: values by sums over the hemisphere that another program made.
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "test")]
 
+use crate::tolerance::{
+    DIGITS_LOST, FEW_ROUNDINGS, LOBE_DIGITS, LOBE_DIGITS_NINE, LOBE_DIGITS_SIX, LOBE_SUM,
+};
 use brdfbake::functions::conversion::{By, CONVERSIONS, conversion, gltf_anisotropy};
 use brdfbake::terms::half_vectors::{Lobe, distance};
 
@@ -17,11 +20,11 @@ fn exponents_become_the_nearest_widths() {
     let entry = conversion("blinn-phong").unwrap();
     for (n, peak, least, alpha) in POWERS {
         let formula = entry.convert([n; 2], By::Formula);
-        assert!((formula.alphas[0] - (2.0 / (n + 2.0)).sqrt()).abs() < 1e-15);
-        assert!((formula.distance - peak).abs() < 1e-4, "{n}: {}", formula.distance);
+        assert!((formula.alphas[0] - (2.0 / (n + 2.0)).sqrt()).abs() < FEW_ROUNDINGS);
+        assert!((formula.distance - peak).abs() < LOBE_DIGITS, "{n}: {}", formula.distance);
         let nearest = entry.convert([n; 2], By::Nearest);
-        assert!((nearest.distance - least).abs() < 1e-4, "{n}: {}", nearest.distance);
-        assert!((nearest.alphas[0] - alpha).abs() < 1e-4, "{n}: {:?}", nearest.alphas);
+        assert!((nearest.distance - least).abs() < LOBE_DIGITS, "{n}: {}", nearest.distance);
+        assert!((nearest.alphas[0] - alpha).abs() < LOBE_DIGITS, "{n}: {:?}", nearest.alphas);
     }
 }
 
@@ -31,27 +34,32 @@ fn beckmann_stays_a_fifth_away() {
     for m in [0.01, 0.3, 0.9] {
         let entry = conversion("beckmann").unwrap();
         let nearest = entry.convert([m; 2], By::Nearest);
-        assert!((nearest.distance - 0.179_768).abs() < 2e-6, "{nearest:?}");
-        assert!((nearest.alphas[0] / m - 0.872_911).abs() < 1e-4);
-        assert!((entry.convert([m; 2], By::Formula).distance - 0.203_632).abs() < 2e-6);
+        assert!((nearest.distance - 0.179_768).abs() < LOBE_DIGITS_SIX, "{nearest:?}");
+        assert!((nearest.alphas[0] / m - 0.872_911).abs() < LOBE_DIGITS);
+        assert!((entry.convert([m; 2], By::Formula).distance - 0.203_632).abs() < LOBE_DIGITS_SIX);
     }
     let ward = conversion("ward").unwrap().convert([0.05, 0.5], By::Nearest);
-    assert!((ward.distance - 0.179_768).abs() < 1e-4, "{ward:?}");
+    assert!((ward.distance - 0.179_768).abs() < LOBE_DIGITS, "{ward:?}");
     let (roughness, strength, along_x) = gltf_anisotropy(ward.alphas);
-    assert!((roughness - 0.208_915).abs() < 1e-4 && (strength - 0.640_887).abs() < 1e-4 && !along_x);
+    assert!(
+        (roughness - 0.208_915).abs() < LOBE_DIGITS && (strength - 0.640_887).abs() < LOBE_DIGITS && !along_x
+    );
 }
 
 #[test]
 fn exponents_of_two_axes_become_anisotropy() {
     let entry = conversion("ashikhmin-shirley").unwrap();
     let (roughness, strength, along_x) = gltf_anisotropy(entry.convert([10.0, 1000.0], By::Formula).alphas);
-    assert!((roughness - 0.211_368_648).abs() < 1e-8, "{roughness}");
-    assert!((strength - 0.616_907_121).abs() < 1e-8 && along_x, "{strength}");
+    assert!((roughness - 0.211_368_648).abs() < LOBE_DIGITS_NINE, "{roughness}");
+    assert!((strength - 0.616_907_121).abs() < LOBE_DIGITS_NINE && along_x, "{strength}");
     let nearest = entry.convert([10.0, 1000.0], By::Nearest);
     assert!(nearest.distance < entry.convert([10.0, 1000.0], By::Formula).distance);
     for pair in [[0.3, 0.1], [0.1, 0.3]] {
         let (roughness, strength, along_x) = gltf_anisotropy(pair);
-        assert!((roughness - 0.316_227_766).abs() < 1e-9 && (strength - 0.471_404_521).abs() < 1e-9);
+        assert!(
+            (roughness - 0.316_227_766).abs() < LOBE_DIGITS_NINE
+                && (strength - 0.471_404_521).abs() < LOBE_DIGITS_NINE
+        );
         assert_eq!(along_x, pair[0] > pair[1]);
     }
 }
@@ -89,7 +97,7 @@ fn lobes_of_two_widths_are_compared_as_by_a_sum() {
     }
     let expected = sum / f64::from(n * n);
     let d = distance(&Lobe::Ggx(a), &Lobe::Ggx(b));
-    assert!((d - expected).abs() < 2e-5, "{d}, by a sum {expected}");
+    assert!((d - expected).abs() < LOBE_SUM, "{d}, by a sum {expected}");
 }
 
 #[test]
@@ -97,9 +105,9 @@ fn what_is_ggx_already_is_left() {
     for id in ["alpha", "roughness", "smoothness", "disney", "openpbr"] {
         let entry = CONVERSIONS.iter().find(|c| c.id == id).unwrap();
         for by in [By::Nearest, By::Formula] {
-            assert!(entry.convert([0.4, 0.3], by).distance < 1e-12, "{id}");
+            assert!(entry.convert([0.4, 0.3], by).distance < DIGITS_LOST, "{id}");
         }
     }
     let both = conversion("roughness").unwrap().convert([0.3; 2], By::Nearest).alphas;
-    assert!(both.iter().all(|a| (a - 0.09).abs() < 1e-15));
+    assert!(both.iter().all(|a| (a - 0.09).abs() < FEW_ROUNDINGS));
 }

@@ -1,6 +1,7 @@
 //! One lobe for many facets: how near the fit and the published rules come, by a quadrature that shares nothing with theirs.
 #![allow(clippy::unwrap_used, clippy::print_stderr, clippy::disallowed_methods, reason = "test")]
 
+use crate::tolerance::LOBE_DIGITS;
 use brdfbake::maps::{Centre, Effort, Facet, Fitter, Footprint, Lobe, RULES, Shape, rules};
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
@@ -262,7 +263,7 @@ fn the_fit_finds_the_best_lobe_of_other_footprints() {
                 fitted.distance,
                 fitted.doubt
             );
-            assert!(d <= 1.05 * best + 1e-4, "{name} {centre:?} {shape:?}: {d}, best {best}");
+            assert!(d <= 1.05 * best + LOBE_DIGITS, "{name} {centre:?} {shape:?}: {d}, best {best}");
         }
     }
 }

@@ -8,6 +8,7 @@
     reason = "test"
 )]
 
+use crate::tolerance::{LOBE_DIGITS, SINGLE_ANGLES};
 use brdfbake::cancel::Cancel;
 use brdfbake::encode::Storage;
 use brdfbake::maps::{Centre, Convention, Effort, Objective, Settings, Shape, rules};
@@ -188,7 +189,7 @@ fn a_factor_is_inside_the_map() {
     let mut request = request(Some(normal), image(roughness, false));
     request.factor = 0.5;
     let done = bake(&request, dir.path());
-    assert!((done.record.levels[0].roughness[0] - 0.5 * 128.0 / 255.0).abs() < 1e-6);
+    assert!((done.record.levels[0].roughness[0] - 0.5 * 128.0 / 255.0).abs() < SINGLE_ANGLES as f32);
     assert!(done.record.levels[1].roughness[0] > 0.5, "{:?}", done.record.levels[1].roughness);
 }
 
@@ -233,8 +234,8 @@ fn exponents_are_converted_with_their_distance() {
     *from = Some(FromLobe { conversion: blinn_phong, range: [1.0, 100.0], log: true, by: By::Nearest });
     let done = bake(&request, dir.path());
     let level = &done.record.levels[0];
-    assert!((f64::from(level.roughness[0]).powi(2) - 0.1227).abs() < 1e-4, "{:?}", level.roughness);
-    assert!((f64::from(level.largest) - 0.1755).abs() < 1e-4, "{}", level.largest);
+    assert!((f64::from(level.roughness[0]).powi(2) - 0.1227).abs() < LOBE_DIGITS, "{:?}", level.roughness);
+    assert!((f64::from(level.largest) - 0.1755).abs() < LOBE_DIGITS, "{}", level.largest);
 }
 
 /// Packed channels keep plain means; roughness is filtered among them.
@@ -310,7 +311,7 @@ fn every_container_holds_every_level() {
     let largest = brdfbake::encode::read::read_bytes(&exr).unwrap();
     let coarse = &level(&out, "roughness", 0).planes[0].values;
     let fine = &largest.channel("roughness").unwrap().values;
-    assert!(coarse.iter().zip(fine).all(|(c, f)| (f64::from(*c) - f).abs() <= 0.5 / 255.0 + 1e-6));
+    assert!(coarse.iter().zip(fine).all(|(c, f)| (f64::from(*c) - f).abs() <= 0.5 / 255.0 + SINGLE_ANGLES));
     let audit = audit::audit(&out).unwrap();
     assert!(audit.files.iter().all(|f| f.state == audit::State::Whole));
 }

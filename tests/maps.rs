@@ -5,3 +5,4 @@ mod counted;
 mod footprints;
 mod map_files;
 mod map_pictures;
+mod tolerance;
