@@ -49,6 +49,7 @@ topics! {
     formats
     engines
     scenes
+    maps
     conventions
     accuracy
     laws

@@ -3,8 +3,7 @@
 //! A texel of a smaller level stands for a *footprint* of facets, each with a normal and a width. What light sees of it is the
 //! mean of the facets' lobes; what a texture can hold is one lobe. [`fit`] finds the nearest one; [`rules`] holds that
 //! and the published formulas, for comparison. See [`lobe`] for the frames, [`footprint`] for the sums.
-//!
-#![doc = include_str!("../guide/maps.md")]
+//! The manual is the page [`maps`](crate::guide::maps) of the guide.
 
 mod descent;
 pub mod filter;
