@@ -1,6 +1,6 @@
 //! Parameters of other lobes as widths of GGX.
 //!
-//! A parametrisation is one entry of [`CONVERSIONS`] and one word of [`FROM`]: maps and `brdfbake eval` go through the same entry.
+//! A parametrisation is one entry of [`CONVERSIONS`] and one word of `FROM`: maps and `brdfbake eval` go through the same entry.
 
 use super::{FunctionError, FunctionInfo, NO_ANGLES, known, number};
 use crate::cite::{self, Cite};

@@ -1,7 +1,7 @@
 //! All levels of a pair of maps: every texel's footprint to its lobe, row by row on all threads.
 //!
 //! A footprint is gathered from the texels themselves up to level [`KEPT`]; there it is merged to at most
-//! [`MOST_FACETS`](super::footprint::MOST_FACETS) facets, which the next levels are gathered from. So the work of a level is
+//! [`MOST_FACETS`] facets, which the next levels are gathered from. So the work of a level is
 //! proportional to its texels, and that of all of them to the texels of the first. A texel depends on nothing but its
 //! footprint: the same bytes on any number of threads.
 
