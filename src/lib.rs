@@ -10,10 +10,12 @@
 //! | 1 | [`math`] | frames, special functions, compensated sums |
 //! | 2 | [`grid`] | axes, tables, the reference reader, provenance |
 //! | 2 | [`integrate`] | quadrature rules and charts of the hemisphere; knows no BRDF |
+//! | 2 | [`picture`] | decoded images as planes, and their pyramids |
 //! | 2 | [`terms`] | D, F, G of the papers in closed form |
 //! | 3 | [`models`] | one file a reflectance model, and their registry |
 //! | 4 | [`functions`] | the terms as functions with ids, for evaluation by name |
 //! | 4 | [`tables`] | one file a bakeable table, their registry, and the one driver loop |
+//! | 5 | [`maps`] | footprints of normals to lobes: one file a filter rule |
 //! | 5 | [`verify`] | one file a law; findings; `Verified` |
 //! | 6 | [`encode`] | one file a container; readers |
 //! | 7 | [`report`] | what a person reads: files and differences as text |
@@ -21,6 +23,7 @@
 //! | 7 | [`plan`] | requests of any asker to one resolved job, and what its bytes depend on |
 //! | 8 | [`recipe`] | the text of recipes to requests, faults to lines; presets and engines |
 //! | 9 | [`pipeline`] | plan, bake, verify, encode, write |
+//! | 9 | [`guide`] | the pages of the manual, and how engines use their tables |
 //! | 10 | [`build`] | recipes as a step of a Cargo build |
 //! | 11 | `cli` | one file a verb (feature `cli`) |
 //!
@@ -36,7 +39,10 @@ pub mod cite;
 pub mod cli;
 pub mod encode;
 pub mod grid;
+pub mod guide;
+pub mod maps;
 pub mod models;
+pub mod picture;
 pub mod pipeline;
 pub mod plan;
 pub mod recipe;

@@ -178,6 +178,17 @@ pub(crate) const AXIS_STEEP: f64 = 1e-4;
 /// An index on any axis, in lengths of the axis.
 pub(crate) const AXIS_STEP: f64 = 1e-6;
 
+// Lobes of parameter maps, against sums over the hemisphere that other programs made.
+
+/// Four printed digits, and what the grid of that program leaves of a minimum.
+pub(crate) const LOBE_DIGITS: f64 = 1e-4;
+/// Six printed digits.
+pub(crate) const LOBE_DIGITS_SIX: f64 = 2e-6;
+/// Nine printed digits.
+pub(crate) const LOBE_DIGITS_NINE: f64 = 1e-8;
+/// A midpoint sum of 1500 x 1500 slopes of an integrand with a kink.
+pub(crate) const LOBE_SUM: f64 = 2e-5;
+
 // Published numbers: the digits that are printed, or the error that the author states.
 
 /// Four digits after the point.

@@ -24,7 +24,10 @@ pub(super) fn report(engine: &Engine, outcome: &Outcome) {
         if let Some(read) = record.as_read.as_ref().or(record.reconstruction.as_ref()) {
             let whole = [read.whole.largest.value, read.whole.mean];
             let practical = read.practical.as_ref().map(|p| [p.largest.value, p.mean]);
-            text.push_str(&format!("\n    as the engine reads it: {}", errors(whole, practical)));
+            text.push_str(&format!(
+                "\n    as the engine reads it, between the texels: {}",
+                errors(whole, practical)
+            ));
             if let Some(shipped) = &file.shipped {
                 text.push_str(&format!(
                     "\n    the shipped file: {}",
@@ -34,17 +37,25 @@ pub(super) fn report(engine: &Engine, outcome: &Outcome) {
         }
         output::talk(&text);
     }
+    output::talk(&format!(
+        "  how to put them in place, and how to see that it took: brdfbake guide {}",
+        engine.id
+    ));
 }
 
 fn errors(whole: [f64; 2], practical: Option<[f64; 2]>) -> String {
     let both = |[largest, mean]: [f64; 2]| format!("{largest:.1e} at most, {mean:.1e} in the mean");
-    let practical = practical.map_or_else(String::new, |p| format!("; practical domain {}", both(p)));
+    let practical = practical
+        .map_or_else(String::new, |p| format!("; where mu >= 0.05 and roughness >= 0.09, {}", both(p)));
     format!("{}{practical}", both(whole))
 }
 
 /// The page of an engine.
 pub(super) fn page(engine: &Engine) -> String {
-    let mut text = format!("engine {}\n{}: {}\n", engine.id, engine.title, engine.version);
+    let mut text = format!(
+        "engine {}\n{}: {}\nhow to put its tables in place: brdfbake guide {}\n",
+        engine.id, engine.title, engine.version, engine.id
+    );
     for file in engine.files {
         text.push_str(&format!(
             "\n  {}\n    replaces: {}\n    read at: {}\n",

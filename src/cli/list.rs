@@ -5,6 +5,7 @@ use crate::encode::ENCODERS;
 use crate::encode::option::words;
 use crate::functions;
 use crate::grid::quantity::QUANTITIES;
+use crate::maps::RULES;
 use crate::models::MODELS;
 use crate::recipe::{ENGINES, PRESETS};
 use crate::tables::TABLES;
@@ -29,6 +30,8 @@ pub enum What {
     Laws,
     /// Quantities that an axis can sweep.
     Quantities,
+    /// Filter rules of parameter maps.
+    Rules,
 }
 
 /// Arguments of `list`.
@@ -81,6 +84,7 @@ fn rows(what: What) -> Vec<(String, String)> {
             })
             .collect(),
         What::Laws => LAWS.iter().map(|l| row(l.id, l.statement)).collect(),
+        What::Rules => RULES.iter().map(|r| row(r.id, &format!("{}: {}", r.title, r.formula))).collect(),
         What::Quantities => QUANTITIES
             .iter()
             .map(|q| {

@@ -9,11 +9,13 @@ pub mod eval;
 pub mod exit;
 pub mod fit;
 pub mod golden;
+pub mod guide;
 pub mod inspect;
 mod interrupt;
 pub mod laws;
 pub mod limits;
 pub mod list;
+pub mod map;
 pub mod output;
 pub mod plot;
 pub mod progress;
@@ -44,6 +46,8 @@ enum Verb {
     Inspect(inspect::Args),
     /// Compare two images or two output folders.
     Diff(diff::Args),
+    /// Filter normal and roughness maps: levels of lobes fitted to what they stand for, with their errors.
+    Map(Box<map::Args>),
     /// Check that an output folder holds what its manifest says.
     Verify(verify::Args),
     /// Compare a fresh bake with committed outputs, or commit them.
@@ -62,6 +66,8 @@ enum Verb {
     List(list::Args),
     /// Describe a model, function, table, preset, engine, law or quantity.
     Describe(describe::Args),
+    /// Print a page of the guide: recipes, axes, formats, one engine, and more.
+    Guide(guide::Args),
 }
 
 /// Runs a parsed command. `cancel` is set when the user interrupts.
@@ -73,6 +79,7 @@ pub fn run(cli: Cli, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         Verb::Bake(args) => bake::run(&args, cancel),
         Verb::Inspect(args) => inspect::run(&args, cancel),
         Verb::Diff(args) => diff::run(&args, cancel),
+        Verb::Map(args) => map::run(&args, cancel),
         Verb::Verify(args) => verify::run(&args),
         Verb::Golden(args) => golden::run(&args, cancel),
         Verb::Eval(args) => eval::run(&args, cancel),
@@ -82,6 +89,7 @@ pub fn run(cli: Cli, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         Verb::Fit(args) => pool(None)?.install(|| fit::run(&args, cancel)),
         Verb::List(args) => list::run(&args),
         Verb::Describe(args) => describe::run(&args),
+        Verb::Guide(args) => guide::run(&args),
     }
 }
 

@@ -5,6 +5,7 @@ use crate::cancel::Cancel;
 use crate::pipeline::{Event, Progress, Recovery};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock};
 
 /// How to report.
@@ -23,7 +24,7 @@ pub fn reporter(format: Format, quiet: bool, cancel: &Arc<Cancel>) -> Reporter {
         Format::Json => return Reporter::Json(Json { cancel: Arc::clone(cancel), fault: OnceLock::new() }),
         Format::Human if quiet => Box::new(crate::pipeline::Silent),
         Format::Human if std::io::stderr().is_terminal() => Box::new(Bars::default()),
-        Format::Human => Box::new(Plain),
+        Format::Human => Box::new(Plain::default()),
     };
     Reporter::Talk(progress)
 }
@@ -85,11 +86,36 @@ impl Progress for Json {
     }
 }
 
-struct Plain;
+/// Explains the words of a table's line behind the first one that has them.
+#[derive(Default)]
+struct Legend {
+    given: AtomicBool,
+}
+
+impl Legend {
+    /// The text of an event, if it deserves one.
+    fn line(&self, event: &Event<'_>) -> Option<String> {
+        let text = line(event)?;
+        let reads =
+            matches!(event, Event::TableFinished { reconstruction, .. } if !reconstruction.is_empty());
+        if !reads || self.given.swap(true, Ordering::Relaxed) {
+            return Some(text);
+        }
+        Some(format!("{text}\n{LEGEND}"))
+    }
+}
+
+const LEGEND: &str = "    (as read: the largest error of what a shader gets between the texels; practical: where mu >= 0.05 and \
+                      roughness >= 0.09; see `brdfbake guide accuracy`)";
+
+#[derive(Default)]
+struct Plain {
+    legend: Legend,
+}
 
 impl Progress for Plain {
     fn event(&self, event: &Event<'_>) {
-        if let Some(line) = line(event) {
+        if let Some(line) = self.legend.line(event) {
             output::talk(&line);
         }
     }
@@ -97,6 +123,7 @@ impl Progress for Plain {
 
 #[derive(Default)]
 struct Bars {
+    legend: Legend,
     all: MultiProgress,
     state: Mutex<State>,
 }
@@ -149,7 +176,7 @@ impl Progress for Bars {
     fn event(&self, event: &Event<'_>) {
         let Ok(mut state) = self.state.lock() else { return };
         self.on(event, &mut state);
-        if let Some(line) = line(event) {
+        if let Some(line) = self.legend.line(event) {
             // indicatif's own println is silent off a terminal; suspend always prints
             self.all.suspend(|| output::talk(&line));
         }

@@ -93,9 +93,11 @@ fn page(engine: &Engine, suggestion: &Suggestion) -> String {
 fn size(size: &Size) -> String {
     let texels: Vec<String> = size.texels.iter().map(ToString::to_string).collect();
     let errors = |[largest, mean]: [f64; 2]| format!("{largest:.1e} at most, {mean:.1e} in the mean");
-    let practical = size.practical.map_or_else(String::new, |p| format!("; practical domain {}", errors(p)));
+    let practical = size
+        .practical
+        .map_or_else(String::new, |p| format!("; where mu >= 0.05 and roughness >= 0.09, {}", errors(p)));
     format!(
-        "{} {}, {} bytes of texels, off by {}{practical}",
+        "{} {}, {} bytes of texels, off between the texels by {}{practical}",
         texels.join(" x "),
         size.output,
         size.bytes,

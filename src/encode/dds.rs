@@ -20,6 +20,7 @@
 //!
 //! Source: Microsoft, "DDS_HEADER structure" and "DDS_HEADER_DXT10 structure" of the DDS programming guide.
 
+use super::mips::Mips;
 use super::{EncodeError, EncodeInput, Encoder, FileOption, Image, ReadError, Shape, Storage, texels};
 use crate::cancel::Cancel;
 use crate::grid::provenance::ATTRIBUTE;
@@ -37,12 +38,16 @@ const FLAGS: u32 = 0x1 | 0x2 | 0x4 | 0x1000;
 /// `DDSD_PITCH`: bytes of a row. `DDSD_LINEARSIZE`: bytes of a slice, of formats made of blocks.
 const FLAG_PITCH: u32 = 0x8;
 const FLAG_SIZE: u32 = 0x8_0000;
+/// `DDSD_MIPMAPCOUNT`.
+const FLAG_LEVELS: u32 = 0x2_0000;
 const FLAG_DEPTH: u32 = 0x80_0000;
 /// `DDPF_FOURCC`.
 const FOURCC: u32 = 0x4;
 /// `DDSCAPS_TEXTURE`, `DDSCAPS_COMPLEX`.
 const TEXTURE: u32 = 0x1000;
 const COMPLEX: u32 = 0x8;
+/// `DDSCAPS_MIPMAP`.
+const LEVELS: u32 = 0x40_0000;
 /// `DDSCAPS2_VOLUME`.
 const CAPS2_VOLUME: u32 = 0x20_0000;
 /// `D3D10_RESOURCE_DIMENSION_TEXTURE2D`, `_TEXTURE3D`.
@@ -101,35 +106,78 @@ impl Encoder for Dds {
         let components = self.components(&shape);
         let pixels = texels::pack(input, components)?;
         let [width, height, slices] = shape.extent();
-        let volume = shape.is_volume();
-        let depth = if volume { slices } else { 1 };
-        let layers = shape.layers().unwrap_or(1);
+        let head = Head {
+            storage: input.storage,
+            components,
+            size: [width, height],
+            depth: shape.is_volume().then_some(slices),
+            layers: shape.layers().unwrap_or(1),
+            levels: 1,
+            identity: input.label.identity,
+        };
+        Ok([head.write()?, pixels].concat())
+    }
+}
+
+/// A pyramid of packed levels, the largest first, as the format has it.
+pub(super) fn mips(mips: &Mips<'_>, levels: &[Vec<u8>]) -> Result<Vec<u8>, EncodeError> {
+    let head = Head {
+        storage: mips.storage,
+        components: mips.components(),
+        size: mips.levels.first().map_or([1, 1], |l| l.size),
+        depth: None,
+        layers: 1,
+        levels: levels.len(),
+        identity: mips.identity,
+    };
+    Ok([head.write()?, levels.concat()].concat())
+}
+
+/// What the headers tell.
+struct Head<'a> {
+    storage: Storage,
+    components: usize,
+    size: [usize; 2],
+    /// Slices of a volume.
+    depth: Option<usize>,
+    layers: usize,
+    levels: usize,
+    identity: &'a str,
+}
+
+impl Head<'_> {
+    fn write(&self) -> Result<Vec<u8>, EncodeError> {
+        let [width, height] = self.size;
         let size = EncodeError::Size { format: "dds", width, height, limit: 1 << 26 };
-        let block = input.storage.is_block();
+        let (volume, depth) = (self.depth.is_some(), self.depth.unwrap_or(1));
+        let block = self.storage.is_block();
         let line = [width, if block { height } else { 1 }, 1];
-        let pitch = texels::bytes(input.storage, components, line).unwrap_or(usize::MAX);
-        let words = [pitch, width, height, depth, layers].map(u32::try_from);
-        let [Ok(pitch), Ok(width), Ok(height), Ok(depth), Ok(layers)] = words else { return Err(size) };
-        let several = depth > 1 || layers > 1;
+        let pitch = texels::bytes(self.storage, self.components, line).unwrap_or(usize::MAX);
+        let words = [pitch, width, height, depth, self.layers, self.levels].map(u32::try_from);
+        let [Ok(pitch), Ok(width), Ok(height), Ok(depth), Ok(layers), Ok(levels)] = words else {
+            return Err(size);
+        };
+        let several = depth > 1 || layers > 1 || levels > 1;
         let mut out = MAGIC.to_vec();
-        let flags = FLAGS | if volume { FLAG_DEPTH } else { 0 } | if block { FLAG_SIZE } else { FLAG_PITCH };
-        for n in [124, flags, height, width, pitch, depth, 1] {
+        let mut flags = FLAGS | if volume { FLAG_DEPTH } else { 0 };
+        flags |= if block { FLAG_SIZE } else { FLAG_PITCH };
+        flags |= if levels > 1 { FLAG_LEVELS } else { 0 };
+        for n in [124, flags, height, width, pitch, depth, levels] {
             out.extend(n.to_le_bytes());
         }
-        out.extend(reserved(input.label.identity));
+        out.extend(reserved(self.identity));
         for n in [32, FOURCC, u32::from_le_bytes(*b"DX10"), 0, 0, 0, 0, 0] {
             out.extend(n.to_le_bytes());
         }
-        let caps = TEXTURE | if several { COMPLEX } else { 0 };
+        let caps = TEXTURE | if several { COMPLEX } else { 0 } | if levels > 1 { LEVELS } else { 0 };
         for n in [caps, if volume { CAPS2_VOLUME } else { 0 }, 0, 0, 0] {
             out.extend(n.to_le_bytes());
         }
-        let written = if input.storage == Storage::Rgbd { 4 } else { components };
+        let written = if self.storage == Storage::Rgbd { 4 } else { self.components };
         let dimension = if volume { TEXTURE3D } else { TEXTURE2D };
-        for n in [dxgi(input.storage, written), dimension, 0, layers, 0] {
+        for n in [dxgi(self.storage, written), dimension, 0, layers, 0] {
             out.extend(n.to_le_bytes());
         }
-        out.extend(pixels);
         Ok(out)
     }
 }

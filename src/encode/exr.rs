@@ -9,16 +9,17 @@
 //! crate keeps custom attributes in a `HashMap` with a random seed, so that two of them make the bytes differ from run
 //! to run. The line order is fixed to increasing for the same reason.
 
+use super::mips::Mips;
 use super::stoppable::Stoppable;
 use super::{EncodeError, EncodeInput, Encoder, FileOption, Image as Picture, ReadError, Storage};
 use crate::cancel::Cancel;
 use crate::grid::Channel;
 use crate::grid::provenance::ATTRIBUTE;
 use ::exr::image::write::WritableImage;
-use ::exr::math::Vec2;
+use ::exr::math::{RoundingMode, Vec2};
 use ::exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Blocks, Compression, Encoding, FlatSamples, Image,
-    ImageAttributes, Layer, LayerAttributes, LineOrder, Text, f16,
+    ImageAttributes, Layer, LayerAttributes, Levels, LineOrder, Text, f16,
 };
 use std::io::Cursor;
 use std::ops::Range;
@@ -123,6 +124,47 @@ fn parts(
         Layer::new((width, height), attributes, encoding, channels(input, texels))
     };
     Ok((0..parts).map(layer).collect())
+}
+
+/// A pyramid: tiles of 64 x 64 pixels, levels rounded down.
+#[allow(clippy::cast_possible_truncation, reason = "the value has been rounded to a half")]
+pub(super) fn mips(mips: &Mips<'_>) -> Result<Vec<u8>, EncodeError> {
+    let n = mips.channels.len();
+    let mut levels = Vec::new();
+    for level in mips.levels {
+        mips.cancel.check()?;
+        levels.push(super::mips::stored(mips, level)?);
+    }
+    let samples = |values: &[f32], c: usize| {
+        let own = values.iter().skip(c).step_by(n);
+        if mips.storage == Storage::Half {
+            FlatSamples::F16(own.map(|v| f16::from_f32(*v)).collect())
+        } else {
+            FlatSamples::F32(own.copied().collect())
+        }
+    };
+    let channel = |(c, channel): (usize, &Channel)| AnyChannel {
+        name: text(&channel.id),
+        sample_data: Levels::Mip {
+            rounding_mode: RoundingMode::Down,
+            level_data: levels.iter().map(|values| samples(values, c)).collect(),
+        },
+        quantize_linearly: false,
+        sampling: Vec2(1, 1),
+    };
+    let channels = AnyChannels::sort(mips.channels.iter().enumerate().map(channel).collect());
+    let encoding = Encoding {
+        compression: Compression::ZIP16,
+        blocks: Blocks::Tiles(Vec2(TILE, TILE)),
+        line_order: LineOrder::Increasing,
+    };
+    let mut attributes = LayerAttributes::default();
+    attributes.other.insert(text(ATTRIBUTE), AttributeValue::Text(text(mips.provenance_json)));
+    let [width, height] = mips.levels.first().map_or([1, 1], |l| l.size);
+    let layer = Layer::new((width, height), attributes, encoding, channels);
+    let mut bytes = Stoppable::new(Cursor::new(Vec::new()), mips.cancel);
+    Image::from_layer(layer).write().non_parallel().to_buffered(&mut bytes).map_err(library)?;
+    Ok(bytes.into_inner().into_inner())
 }
 
 fn library(e: ::exr::error::Error) -> EncodeError {

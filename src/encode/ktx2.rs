@@ -15,7 +15,7 @@
 //! A table with three axes is a volume, with option `layers` an array; one with four is always an array, since nothing
 //! filters across the fourth. Few GPUs sample three components of 8 or 16 bits: `rgba` makes them four.
 //!
-//! The file has one level. Its keys are `KTXorientation` (`rd`, `rdi` for a volume: down and away), `KTXwriter`,
+//! A table has one level; a pyramid ([`super::mips`]) has all of its own, the smallest first in the file, as the format demands. The keys are `KTXorientation` (`rd`, `rdi` for a volume: down and away), `KTXwriter`,
 //! `KTXwriterScParams` if it is supercompressed, and `brdfbake`, the provenance as JSON text. Values end with a NUL, as
 //! those of the format's own keys do. The descriptor is that of [`super`]'s `dfd`.
 //!
@@ -25,6 +25,7 @@
 //! version of its library, the values do not.
 
 use super::ktx2_read;
+use super::mips::Mips;
 use super::{EncodeError, EncodeInput, Encoder, FileOption, Image, ReadError, Shape, Storage, dfd, texels};
 use crate::cancel::Cancel;
 use crate::grid::provenance::ATTRIBUTE;
@@ -36,8 +37,8 @@ pub struct Ktx2;
 
 pub(super) const MAGIC: &[u8] = b"\xabKTX 20\xbb\r\n\x1a\n";
 
-/// Length of the header, the index and the one entry of the level index.
-const HEAD: usize = 80 + 24;
+/// Length of the header and the index, without the level index.
+const HEAD: usize = 80;
 
 /// Supercompression scheme Zstandard.
 pub(super) const SCHEME_ZSTD: u32 = 2;
@@ -107,7 +108,7 @@ impl Encoder for Ktx2 {
         let together = Parts {
             layers: all.len(),
             provenance: format!("[{}]", texts.join(",")).into(),
-            pixels: all.iter().flat_map(|p| p.pixels.iter().copied()).collect(),
+            levels: vec![all.iter().flat_map(|p| p.levels.concat()).collect()],
             ..*first
         };
         together.write()
@@ -129,7 +130,8 @@ struct Parts<'a> {
     layers: usize,
     zstd: bool,
     provenance: Cow<'a, str>,
-    pixels: Vec<u8>,
+    /// The bytes of each level, the largest first.
+    levels: Vec<Vec<u8>>,
     cancel: &'a Cancel,
 }
 
@@ -150,7 +152,7 @@ impl<'a> Parts<'a> {
             layers: shape.layers().unwrap_or(0),
             zstd: shape.has(FileOption::Zstd),
             provenance: input.label.provenance_json.into(),
-            pixels,
+            levels: vec![pixels],
             cancel: input.cancel,
         })
     }
@@ -168,36 +170,50 @@ impl<'a> Parts<'a> {
     fn write(&self) -> Result<Vec<u8>, EncodeError> {
         let descriptor = dfd::descriptor(self.storage, self.components);
         let keys = self.keys();
-        let data = if self.zstd { compress(&self.pixels, self.cancel)? } else { self.pixels.clone() };
-        // data that is not supercompressed begins at a multiple of its texel and of 4
-        let texel = texels::size(self.storage, self.components);
-        let align = if self.zstd { 1 } else { lcm(texel, 4) };
-        let start = (HEAD + descriptor.len() + keys.len()).next_multiple_of(align);
+        let head = HEAD + 24 * self.levels.len();
         let [width, height] = self.size;
         let too_large = || EncodeError::Size { format: "ktx2", width, height, limit: 1 << 26 };
         let word = |n: usize| u32::try_from(n).map_err(|_| too_large());
         let mut out = MAGIC.to_vec();
         let format = vk_format(self.storage, self.components);
-        let [depth, layers] = [word(self.depth)?, word(self.layers)?];
+        let [depth, layers, levels] = [word(self.depth)?, word(self.layers)?, word(self.levels.len())?];
         for n in [format, type_size(self.storage), word(width)?, word(height)?, depth, layers] {
             out.extend(n.to_le_bytes());
         }
-        // one face, one level
-        for n in [1, 1, if self.zstd { SCHEME_ZSTD } else { 0 }] {
+        // one face
+        for n in [1, levels, if self.zstd { SCHEME_ZSTD } else { 0 }] {
             out.extend(n.to_le_bytes());
         }
-        for n in [HEAD, descriptor.len(), HEAD + descriptor.len(), keys.len()] {
+        for n in [head, descriptor.len(), head + descriptor.len(), keys.len()] {
             out.extend(word(n)?.to_le_bytes());
         }
         out.extend([0; 16]);
-        for n in [start, data.len(), self.pixels.len()] {
+        let (index, data) = self.data(head + descriptor.len() + keys.len())?;
+        for n in index.into_iter().flatten() {
             out.extend((n as u64).to_le_bytes());
         }
         out.extend(descriptor);
         out.extend(keys);
-        out.resize(start, 0);
         out.extend(data);
         Ok(out)
+    }
+
+    /// The level index (offset, length, length unpacked; the largest level first), and what follows the `start` bytes of the head: the
+    /// levels, the smallest first.
+    fn data(&self, start: usize) -> Result<(Vec<[usize; 3]>, Vec<u8>), EncodeError> {
+        // data that is not supercompressed begins at a multiple of its texel and of 4
+        let texel = texels::size(self.storage, self.components);
+        let align = if self.zstd { 1 } else { lcm(texel, 4) };
+        let (mut index, mut out) = (Vec::new(), Vec::new());
+        for pixels in self.levels.iter().rev() {
+            let at = (start + out.len()).next_multiple_of(align);
+            out.resize(at - start, 0);
+            let packed = if self.zstd { compress(pixels, self.cancel)? } else { pixels.clone() };
+            index.push([at, packed.len(), pixels.len()]);
+            out.extend(packed);
+        }
+        index.reverse();
+        Ok((index, out))
     }
 
     /// Key/value data, sorted by key, every entry padded to 4 bytes.
@@ -220,6 +236,22 @@ impl<'a> Parts<'a> {
         }
         out
     }
+}
+
+/// A pyramid of packed levels.
+pub(super) fn mips(mips: &Mips<'_>, levels: Vec<Vec<u8>>) -> Result<Vec<u8>, EncodeError> {
+    let parts = Parts {
+        storage: mips.storage,
+        components: mips.components(),
+        size: mips.levels.first().map_or([1, 1], |l| l.size),
+        depth: 0,
+        layers: 0,
+        zstd: false,
+        provenance: mips.provenance_json.into(),
+        levels,
+        cancel: mips.cancel,
+    };
+    parts.write()
 }
 
 /// `VkFormat` of a storage.
@@ -248,7 +280,7 @@ pub(super) fn storage(format: u32) -> Option<(Storage, usize)> {
         .find(|&(s, n)| vk_format(s, n) == format)
 }
 
-/// Bytes of the word whose byte order matters; of blocks there is none.
+/// Size in bytes of the words that depend on byte order; 1 for block-compressed formats, as the specification has it.
 const fn type_size(storage: Storage) -> u32 {
     match storage {
         _ if storage.is_block() => 1,

@@ -64,6 +64,7 @@ pub mod hdr;
 pub mod ktx2;
 mod ktx2_read;
 pub mod merl;
+pub mod mips;
 pub mod npy;
 mod open;
 pub mod option;

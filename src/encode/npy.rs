@@ -121,7 +121,7 @@ fn value<'a>(header: &'a str, key: &str) -> Result<&'a str, ReadError> {
 
 /// Width, height (all slower axes), channels.
 fn extent(shape: &str) -> Result<[usize; 3], ReadError> {
-    let wrong = || fault(format!("the shape {shape} is none"));
+    let wrong = || fault(format!("`{shape}` is not a shape"));
     let inner = shape.strip_prefix('(').and_then(|s| s.strip_suffix(')')).ok_or_else(wrong)?;
     let mut lengths = Vec::new();
     for part in inner.split(',').map(str::trim).filter(|p| !p.is_empty()) {

@@ -23,7 +23,7 @@ pub fn read_bytes_until(cancel: &Cancel, bytes: &[u8]) -> Result<Image, ReadErro
         Some(encoder) => encoder.read(bytes, cancel),
         None => Err(ReadError::Unknown(bytes.iter().copied().take(8).collect())),
     };
-    // what was stopped has holes, or a fault that is none
+    // a read that was stopped is incomplete, or failed because it was stopped
     cancel.check()?;
     read
 }

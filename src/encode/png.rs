@@ -20,6 +20,7 @@
 //! the keyword `brdfbake`; it holds the ids and ranges of the channels, without which the codes mean nothing.
 //! Filter and compression level are fixed, so that one version of this program always makes the same bytes.
 
+use super::mips::Mips;
 use super::{EncodeError, EncodeInput, Encoder, FileOption, Image, ReadError, Shape, Storage, texels};
 use crate::cancel::Cancel;
 use crate::grid::provenance::ATTRIBUTE;
@@ -72,33 +73,67 @@ impl Encoder for Png {
 
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
         input.check(self)?;
-        let [width, height] = input.size();
+        let components = self.components(&input.shape());
+        let file = File {
+            size: input.size(),
+            colour: match (input.storage, components) {
+                (Storage::Rgbd, _) | (_, 4) => ::png::ColorType::Rgba,
+                (_, 1) => ::png::ColorType::Grayscale,
+                _ => ::png::ColorType::Rgb,
+            },
+            wide: input.storage == Storage::Unorm16,
+            tagged: !input.shape().has(FileOption::Untagged),
+            provenance: input.label.provenance_json,
+        };
+        file.write(texels::pack(input, components)?)
+    }
+}
+
+/// One level of a pyramid, packed.
+pub(super) fn level(
+    mips: &Mips<'_>,
+    size: [usize; 2],
+    components: usize,
+    pixels: Vec<u8>,
+) -> Result<Vec<u8>, EncodeError> {
+    let colour = match components {
+        1 => ::png::ColorType::Grayscale,
+        4 => ::png::ColorType::Rgba,
+        _ => ::png::ColorType::Rgb,
+    };
+    let wide = mips.storage == Storage::Unorm16;
+    File { size, colour, wide, tagged: false, provenance: mips.provenance_json }.write(pixels)
+}
+
+/// What stands round the pixels.
+struct File<'a> {
+    size: [usize; 2],
+    colour: ::png::ColorType,
+    wide: bool,
+    tagged: bool,
+    provenance: &'a str,
+}
+
+impl File<'_> {
+    fn write(&self, mut pixels: Vec<u8>) -> Result<Vec<u8>, EncodeError> {
+        let [width, height] = self.size;
         let (Ok(w), Ok(h)) = (u32::try_from(width), u32::try_from(height)) else {
-            return Err(EncodeError::Size { format: self.id(), width, height, limit: 1 << 24 });
+            return Err(EncodeError::Size { format: Png.id(), width, height, limit: 1 << 24 });
         };
         let library =
-            |e: ::png::EncodingError| EncodeError::Library { format: self.id(), source: Box::new(e) };
+            |e: ::png::EncodingError| EncodeError::Library { format: Png.id(), source: Box::new(e) };
         let mut bytes = Vec::new();
         let mut encoder = ::png::Encoder::new(&mut bytes, w, h);
-        let components = self.components(&input.shape());
-        encoder.set_color(match (input.storage, components) {
-            (Storage::Rgbd, _) | (_, 4) => ::png::ColorType::Rgba,
-            (_, 1) => ::png::ColorType::Grayscale,
-            _ => ::png::ColorType::Rgb,
-        });
-        let wide = input.storage == Storage::Unorm16;
-        encoder.set_depth(if wide { ::png::BitDepth::Sixteen } else { ::png::BitDepth::Eight });
+        encoder.set_color(self.colour);
+        encoder.set_depth(if self.wide { ::png::BitDepth::Sixteen } else { ::png::BitDepth::Eight });
         encoder.set_filter(::png::Filter::Paeth);
         encoder.set_deflate_compression(::png::DeflateCompression::Level(6));
-        if !input.shape().has(FileOption::Untagged) {
+        if self.tagged {
             encoder.set_source_gamma(::png::ScaledFloat::new(1.0));
         }
-        encoder
-            .add_itxt_chunk(ATTRIBUTE.to_owned(), input.label.provenance_json.to_owned())
-            .map_err(library)?;
+        encoder.add_itxt_chunk(ATTRIBUTE.to_owned(), self.provenance.to_owned()).map_err(library)?;
         let mut writer = encoder.write_header().map_err(library)?;
-        let mut pixels = texels::pack(input, components)?;
-        if wide {
+        if self.wide {
             // PNG is big-endian
             pixels.chunks_exact_mut(2).for_each(<[u8]>::reverse);
         }

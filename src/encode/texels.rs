@@ -98,7 +98,7 @@ const fn top(storage: Storage, component: usize) -> f64 {
     clippy::cast_sign_loss,
     reason = "codes are integers below 2^16 or floats of the storage"
 )]
-fn put(storage: Storage, codes: &[f64], bytes: &mut Vec<u8>) {
+pub(super) fn put(storage: Storage, codes: &[f64], bytes: &mut Vec<u8>) {
     match storage {
         Storage::Half => codes.iter().for_each(|&v| bytes.extend(f16::from_f64(v).to_le_bytes())),
         Storage::Float => codes.iter().for_each(|&v| bytes.extend((v as f32).to_le_bytes())),
@@ -256,7 +256,7 @@ fn name(planes: &mut Vec<Plane>, p: &crate::grid::Provenance, told: &[f64]) {
         let value = told.get(i).copied().unwrap_or(usual);
         plane.values.iter().all(|&v| (plane.sample.decode(v, [0.0, 1.0]) - value).abs() == 0.0)
     });
-    // a pixel with more components than a table would get is of another make
+    // more components than the writer gives a table of this many channels: another program wrote the file
     if !filled && planes.len() != n && !(n == 2 && planes.len() == 3) {
         return;
     }

@@ -37,7 +37,7 @@ pub enum EvalError {
         /// The column.
         column: &'static str,
     },
-    /// An angle that is none.
+    /// An angle outside its range.
     #[error(transparent)]
     Angle(#[from] AngleError),
     /// A delta has no value.

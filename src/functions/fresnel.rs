@@ -264,7 +264,10 @@ pub static ALL: &[FunctionInfo] = &[
         id: "gulbrandsen",
         title: "Index of a metal from reflectance and edge tint",
         formula: "n = g n_min + (1 - g) n_max, k^2 = (n_max - n)(n - 1 / n_max), n_min = (1 - r)/(1 + r), n_max = (1 + sqrt r)/(1 - sqrt r)",
-        sources: &[(cite::GULBRANDSEN_2014, "Eq. 4 to 6 (numbers recalled)")],
+        sources: &[(
+            cite::GULBRANDSEN_2014,
+            "Eq. 12 (n), Eq. 2 solved for k (numbers as implementations quote them)",
+        )],
         params: &[
             Param::choice("part", "the real part n or the extinction k", &["n", "k"]),
             number("r", "reflectance at normal incidence", [0.0, gulbrandsen::R_MAX], 0.9),
@@ -291,7 +294,7 @@ pub static ALL: &[FunctionInfo] = &[
         id: "gulbrandsen-inverse",
         title: "Reflectance and edge tint from the index of a metal",
         formula: "r = ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2), g = (n_max - n) / (n_max - n_min)",
-        sources: &[(cite::GULBRANDSEN_2014, "Eq. 7 and 8 (numbers recalled)")],
+        sources: &[(cite::GULBRANDSEN_2014, "Eq. 14 and 15 (numbers as implementations quote them)")],
         params: &[Param::choice("part", "the reflectance r or the tint g", &["r", "g"]), N, K],
         inputs: &[],
         unit: "1",

@@ -3,6 +3,7 @@
 //! A function turns parameters, and directions if it uses any, into one number. Models are not functions: they have a
 //! sampler, a density and laws. To add a function: write a [`FunctionInfo`] into the file of its family; that is all.
 
+pub mod conversion;
 pub mod energy;
 pub mod evaluate;
 pub mod filtering;
@@ -43,6 +44,7 @@ pub static FAMILIES: &[&[FunctionInfo]] = &[
     media::ALL,
     phase::ALL,
     filtering::ALL,
+    conversion::ALL,
 ];
 
 /// Everything that is known of a function.
@@ -134,7 +136,7 @@ impl Angles {
 /// How far beyond pi or 2 pi an angle may be: what rounding to four decimals adds.
 const ROUNDING: f64 = 2e-5;
 
-/// An angle that is none, or more than a turn: degrees, most likely.
+/// An angle that is not finite or exceeds a full turn, as one in degrees would.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
     "{column} = {} outside [{}, {}]: angles are in radians",
@@ -197,7 +199,7 @@ pub enum FunctionError {
         /// What the column means to the function.
         meaning: &'static str,
     },
-    /// An angle that is none.
+    /// An angle outside its range.
     #[error(transparent)]
     Angle(#[from] AngleError),
     /// A parameter that the function does not declare: a fault of its file.

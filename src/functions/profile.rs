@@ -183,7 +183,7 @@ pub static ALL: &[FunctionInfo] = &[
         id: "burley-diffusion-inside",
         title: "Part of normalised diffusion inside a radius",
         formula: "1 - exp(-x) / 4 - 3 exp(-x / 3) / 4, x = s r / l",
-        sources: &[(cite::CHRISTENSEN_BURLEY_2015, "Eq. 11 (number recalled)")],
+        sources: &[(cite::CHRISTENSEN_BURLEY_2015, "Eq. 11 (number as MoonRay quotes it)")],
         params: &[FIT, ALBEDO, LENGTH, DISTANCE],
         inputs: &[],
         unit: "1",

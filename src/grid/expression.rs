@@ -58,7 +58,7 @@ impl Notation for PlainText {
     }
 }
 
-/// An expression in floating point. [`Scalar`](super::Scalar) builds it.
+/// An expression in floating point; the trait `Scalar` builds it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Expression {
     /// A variable.

@@ -130,7 +130,7 @@ pub enum AuditError {
         /// What goes on in it.
         activity: Activity,
     },
-    /// The manifest is none.
+    /// The manifest cannot be read as one.
     #[error("{path}: {message}")]
     Manifest {
         /// The manifest.

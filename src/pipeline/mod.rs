@@ -11,6 +11,7 @@ mod gather;
 pub mod golden;
 mod in_memory;
 mod manifest;
+pub mod map;
 pub mod memory;
 mod size;
 pub mod suggest;

@@ -27,7 +27,7 @@ pub fn pool(jobs: Option<usize>) -> Result<rayon::ThreadPool, PipelineError> {
     threads.build().map_err(|e| PipelineError::Threads { jobs, message: e.to_string() })
 }
 
-/// A number as the thread library reads it, digits that fit no word included; nothing for 0 and for what is none.
+/// A number as the thread library reads it, numbers too large for a `usize` included; `None` for 0 and for anything else.
 fn number(text: &str) -> Option<usize> {
     let text = text.strip_prefix('+').unwrap_or(text);
     let digits = !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());

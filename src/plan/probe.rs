@@ -129,7 +129,7 @@ fn values(planned: &PlannedTable, point: &Point) -> Look {
     Look::Good
 }
 
-/// An albedo above 1, and the laws that say that there is none.
+/// An albedo above 1, and the laws that it breaks.
 fn albedo(model: &dyn Brdf, sweep: &Sweep, point: &Point) -> Option<(String, Vec<&'static str>)> {
     let e = integrate(model, sweep.view(point.values()), &[Functional::One], COARSE).ok()?;
     let above = e.value[0] - e.error[0] > 1.0;

@@ -24,6 +24,8 @@ pub struct Engine {
     pub reader: Reader,
     /// The text of the recipe.
     pub recipe: &'static str,
+    /// How to put the tables in place, import settings, and how to see that it took: `presets/engines/NAME.md`.
+    pub guide: &'static str,
     /// The files, in the order of the tables of the recipe.
     pub files: &'static [EngineFile],
 }
@@ -69,6 +71,7 @@ macro_rules! engine {
             version: $version,
             reader: $reader,
             recipe: include_str!(concat!("../../presets/engines/", $id, ".toml")),
+            guide: include_str!(concat!("../../presets/engines/", $id, ".md")),
             files: $files,
         }
     };

@@ -34,9 +34,11 @@ pub fn inspect(name: &str, image: &Image) -> String {
         }
         Some(Claim::Unknown { text, fault }) => {
             planes(&mut lines, image, None);
-            lines.plain("The file has brdfbake metadata that this version does not understand:");
-            lines.item("reason", fault);
-            lines.item("text", &text.chars().take(2000).collect::<String>());
+            if !super::inspect_map::map(&mut lines, text) {
+                lines.plain("The file has brdfbake metadata that this version does not understand:");
+                lines.item("reason", fault);
+                lines.item("text", &text.chars().take(2000).collect::<String>());
+            }
         }
         None => {
             planes(&mut lines, image, None);
@@ -172,7 +174,14 @@ fn quality(lines: &mut Lines, p: &Provenance) {
         for c in &t.choices {
             lines.item("", &format!("{} texels, whole domain: {}", c.texels, spread(&c.whole)));
             if let Some(practical) = &c.practical {
-                lines.item("", &format!("{} texels, practical: {}", c.texels, spread(practical)));
+                lines.item(
+                    "",
+                    &format!(
+                        "{} texels, practical (mu >= 0.05, roughness >= 0.09): {}",
+                        c.texels,
+                        spread(practical)
+                    ),
+                );
             }
         }
     }

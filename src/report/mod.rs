@@ -7,6 +7,7 @@ pub mod analytic;
 pub mod diff;
 pub mod difference;
 pub mod inspect;
+mod inspect_map;
 pub mod plot;
 pub mod text;
 

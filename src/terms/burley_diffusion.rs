@@ -44,7 +44,7 @@ pub fn profile(fit: Fit, albedo: f64, length: f64, r: f64) -> f64 {
 
 /// Part of the profile inside x = s r/l: `1 − exp(−x)/4 − 3 exp(−x/3)/4`, without the difference near 0.
 ///
-/// Source: [Christensen and Burley 2015](crate::cite::CHRISTENSEN_BURLEY_2015) Eq. 11 (number recalled). Domain: x ≥ 0. Range: [0, 1].
+/// Source: [Christensen and Burley 2015](crate::cite::CHRISTENSEN_BURLEY_2015) Eq. 11 (number as MoonRay quotes it). Domain: x ≥ 0. Range: [0, 1].
 /// Accuracy: relative 1e-15 (`tests/terms.rs`).
 #[must_use]
 pub fn cdf(x: f64) -> f64 {

@@ -16,7 +16,8 @@ pub const R_MAX: f64 = 0.999_999;
 /// n_min = (1 − r)/(1 + r), n_max = (1 + √r)/(1 − √r). The printed `k² = (r(n + 1)² − (n − 1)²)/(1 − r)` is the same,
 /// but cancels; here both factors are sums of positive terms: n_max − n = gΔ and
 /// n − 1/n_max = 2√r (1 − √r)/((1 + r)(1 + √r)) + (1 − g)Δ, Δ = n_max − n_min.
-/// Source: [Gulbrandsen 2014](crate::cite::GULBRANDSEN_2014) Eqs. 4 to 6 (numbers recalled); the product form derived here.
+/// Source: [Gulbrandsen 2014](crate::cite::GULBRANDSEN_2014) Eq. 12 and Eq. 2 (numbers as implementations quote
+/// them); the product form derived here.
 /// Domain: r in [0, [`R_MAX`]], clamped; g in [0, 1]. Range: n in (0, 4e6), k ≥ 0; g = 0 gives k = 0, g = 1 |n + ik| = 1.
 /// Accuracy: relative 1e-14 (`tests/terms.rs`).
 #[must_use]
@@ -31,7 +32,7 @@ pub fn index(r: f64, g: f64) -> (f64, f64) {
 ///
 /// `r = ((n − 1)² + k²)/((n + 1)² + k²)`, `g = (n_max − n)/(n_max − n_min)`; for n ≥ 1 the difference is taken as
 /// k²/(n − 1/n_max), for n < 1 as (1 − n + √r (1 + n))/(1 − √r), neither of which cancels.
-/// Source: [Gulbrandsen 2014](crate::cite::GULBRANDSEN_2014) Eqs. 7 and 8 (numbers recalled).
+/// Source: [Gulbrandsen 2014](crate::cite::GULBRANDSEN_2014) Eqs. 14 and 15 (numbers as implementations quote them).
 /// Domain: n ≥ 0, k ≥ 0 with r ≤ [`R_MAX`]. Range: [0, 1] each; n = 1, k = 0 gives r = 0, where g is undefined and is 0.
 /// Accuracy: relative 1e-12 for r ≤ 0.99 (`tests/terms.rs`).
 #[must_use]

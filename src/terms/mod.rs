@@ -11,6 +11,7 @@ pub mod fresnel;
 pub mod ggx;
 pub mod gtr;
 pub mod gulbrandsen;
+pub mod half_vectors;
 pub mod kelemen;
 pub mod lazanyi;
 pub mod ltc;

@@ -31,6 +31,7 @@ const PRINTING: &[&[&str]] = &[
     &["laws", "lambert"],
     &["laws", "lambert", "--json"],
     &["fit", "-t", "fresnel-dielectric", "-d", "1", "--form", "polynomial"],
+    &["map", "--normal", "tests/footprints/normal.png", "--json", "-o", "DIR/maps"],
     &["list", "models"],
     &["list", "models", "--json"],
     &["describe", "ggx"],

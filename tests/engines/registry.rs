@@ -9,9 +9,10 @@ fn engines_are_the_files_of_the_folder() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("presets/engines");
     let files: BTreeSet<String> =
         std::fs::read_dir(&folder).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
-    let listed: BTreeSet<String> = ENGINES.iter().map(|e| format!("{}.toml", e.id)).collect();
+    let listed: BTreeSet<String> =
+        ENGINES.iter().flat_map(|e| [format!("{}.toml", e.id), format!("{}.md", e.id)]).collect();
     assert_eq!(files, listed);
-    assert_eq!(ENGINES.len(), listed.len(), "an id is used twice");
+    assert_eq!(2 * ENGINES.len(), listed.len(), "an id is used twice");
     for e in ENGINES {
         assert!(e.recipe.starts_with("# For "), "{}: the first line says who needs it", e.id);
         assert!(recipe::preset(e.id).is_none(), "{} is a preset too", e.id);

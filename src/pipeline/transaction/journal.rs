@@ -273,7 +273,7 @@ pub(super) fn clear(paths: &Paths) -> io::Result<()> {
     }
 }
 
-/// A second name for the old file, so that its own is never free; where there are none, and for links, the name itself.
+/// A second name for the old file, so that its own name is never free. Without hard links, and for symbolic links, the file is renamed.
 fn save(target: &Path, old: &Path) -> io::Result<()> {
     let found = fs::symlink_metadata(target)?;
     if found.is_dir() {

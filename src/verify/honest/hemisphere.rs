@@ -188,7 +188,7 @@ impl Wanted<'_> {
         let crossing = self.flux == Flux::Crossing;
         // reflected rays are above the horizon where sin(2 t + p) > 0, p the angle of (along, mu)
         let end = if crossing { (d + FRAC_PI_2).min(FRAC_PI_2) } else { 0.5 * (PI - libm::atan2(mu, along)) };
-        // an index that is none has no critical angle
+        // without an interface there is no critical angle
         let critical = ((1.0 - self.eta) * (1.0 + self.eta)).sqrt();
         if self.eta.is_nan() || self.eta >= 1.0 {
             return vec![[0.0, end]];

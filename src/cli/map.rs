@@ -1,0 +1,373 @@
+//! `brdfbake map`: parameter maps with filtered levels, and how far each level is from the texels that it stands for.
+
+use super::limits::Limits;
+use super::{Exit, Failure, output};
+use crate::cancel::Cancel;
+use crate::encode::Storage;
+use crate::encode::mips::{CONTAINERS, storages};
+use crate::functions::conversion::{By, CONVERSIONS};
+use crate::maps::{self, Centre, Convention, Effort, Objective, RULES, Shape, rules};
+use crate::math::figures::short;
+use crate::math::nearest::nearest;
+use crate::picture::{Space, Wrap};
+use crate::pipeline::map::{
+    FromLobe, Input, MapError, MapOutcome, MapRequest, Output, RoughnessInput, run as filter,
+};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::IsTerminal;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Arguments of `map`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Normal map: PNG, JPEG, EXR, KTX2, DDS or HDR. Codes 0..1 stand for -1..1.
+    #[arg(short, long, value_name = "FILE")]
+    normal: Option<PathBuf>,
+    /// Roughness: an image, or a number.
+    #[arg(short, long, value_name = "FILE|NUMBER", default_value = "1")]
+    roughness: String,
+    /// Channel of the roughness; its other channels are written too, with plain means. A grey image serves for any colour.
+    #[arg(long, value_name = "NAME", default_value = "G")]
+    channel: String,
+    /// The image holds 1 - roughness (gloss, smoothness).
+    #[arg(long)]
+    gloss: bool,
+    /// The roughness is coded as sRGB, against every format of materials.
+    #[arg(long)]
+    srgb: bool,
+    /// The codes tell of another lobe: a parametrisation of one number of `describe to-ggx`, such as blinn-phong.
+    #[arg(long, value_name = "ID", requires = "range")]
+    from: Option<String>,
+    /// Numbers that the codes 0 and 1 stand for.
+    #[arg(long, value_name = "LO,HI", value_delimiter = ',', requires = "from")]
+    range: Vec<f64>,
+    /// The codes are spread over the logarithm of the number.
+    #[arg(long, requires = "from")]
+    log: bool,
+    /// Take the GGX lobe of the same peak, not the nearest one.
+    #[arg(long, requires = "from")]
+    formula: bool,
+    /// Factor of the roughness (roughnessFactor of glTF); what is written is for a factor of 1.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1.0)]
+    factor: f64,
+    /// Write the roughness alone, without the channels that it is packed with.
+    #[arg(long)]
+    single: bool,
+    /// Channels of the normal.
+    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', default_values = ["R", "G", "B"])]
+    normal_channels: Vec<String>,
+    /// Green grows down (DirectX); glTF has it grow up.
+    #[arg(long)]
+    green_down: bool,
+    /// Take z = sqrt(1 - x^2 - y^2) in place of the third channel.
+    #[arg(long)]
+    derive_z: bool,
+    /// The normal map holds numbers from -1 to 1, not codes.
+    #[arg(long)]
+    signed: bool,
+    /// Factor of x and y of the normals (normalTexture.scale of glTF); what is written is for a scale of 1.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1.0)]
+    normal_scale: f64,
+    /// Take texels without a direction above the surface as flat (padding that was left black).
+    #[arg(long)]
+    mend_normals: bool,
+    /// Bring a normal map of another size to that of the roughness map.
+    #[arg(long)]
+    resample: bool,
+    /// What lies beyond the border, where a map is resampled.
+    #[arg(long, value_enum, default_value = "repeat")]
+    wrap: WrapMode,
+    /// Filter rule: fit, or a published one (`list rules`).
+    #[arg(long, default_value = "fit")]
+    rule: String,
+    /// The normal that the lobes stand about: the mean, as mips of a normal map have it, or a fitted one, which is written.
+    #[arg(long, value_enum, default_value = "mean")]
+    normals: Normals,
+    /// Fit two widths and a direction, as KHR_materials_anisotropy has them, and write them.
+    #[arg(long)]
+    anisotropic: bool,
+    /// Reference mode: every facet, 16384 nodes, milliseconds a texel.
+    #[arg(long)]
+    exact: bool,
+    /// What the fit makes small: D of the distributions of normals, or the error of the reflected light in four views (slow).
+    #[arg(long, value_enum, default_value = "normals")]
+    objective: Aim,
+    /// Containers: ktx2, dds, exr, png.
+    #[arg(short, long, value_name = "LIST", value_delimiter = ',', default_values = ["ktx2"])]
+    format: Vec<String>,
+    /// Storage of the roughness; of the container, if not given (unorm8, in EXR float).
+    #[arg(long, value_name = "STORAGE")]
+    roughness_storage: Option<String>,
+    /// Storage of the normals; of the container, if not given (unorm16, in EXR float).
+    #[arg(long, value_name = "STORAGE")]
+    normal_storage: Option<String>,
+    /// How the names of the files begin.
+    #[arg(long, default_value = "map")]
+    name: String,
+    /// Texels of a level that are measured against the maps themselves, beside the twenty worst.
+    #[arg(long, value_name = "N", default_value_t = 32)]
+    check: usize,
+    /// Measure every published rule at the same texels.
+    #[arg(long)]
+    compare: bool,
+    /// Output folder.
+    #[arg(short, long, value_name = "DIR", default_value = "brdfbake-maps")]
+    out: PathBuf,
+    #[command(flatten)]
+    limits: Limits,
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    quiet: bool,
+    /// Print what the files say of themselves as JSON on stdout.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum WrapMode {
+    Repeat,
+    Mirror,
+    Clamp,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Aim {
+    Normals,
+    Reflected,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Normals {
+    Mean,
+    Fit,
+}
+
+/// Runs it.
+///
+/// # Errors
+/// [`Failure`] with the exit code of the cause; the output folder is then as it was.
+pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
+    let request = request(args)?;
+    let shown = !args.quiet && std::io::stderr().is_terminal();
+    let bar = if shown { ProgressBar::new(0) } else { ProgressBar::hidden() };
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent}% {pos}/{len} texels, {eta}") {
+        bar.set_style(style);
+    }
+    let tell = |done: usize, all: usize| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    };
+    let done = filter(&request, &args.limits.settings(&args.out), cancel, &tell);
+    bar.finish_and_clear();
+    let outcome = done?;
+    if args.json {
+        let text = serde_json::to_string_pretty(&outcome.record);
+        output::data(&text.map_err(|e| Failure::new(Exit::Internal, e))?)?;
+    } else if !args.quiet {
+        output::talk(&summary(&outcome));
+    }
+    Ok(Exit::Done)
+}
+
+fn request(args: &Args) -> Result<MapRequest, Failure> {
+    let ids: Vec<&str> = RULES.iter().map(|r| r.id).collect();
+    let rule = rules::rule(&args.rule).ok_or_else(|| {
+        let hint = nearest(&args.rule, ids.iter().copied());
+        let hint = hint.map_or_else(String::new, |n| format!("; did you mean `{n}`?"));
+        Failure::usage(format!("--rule {}: no such rule; there is {}{hint}", args.rule, ids.join(", ")))
+    })?;
+    if args.anisotropic && !rule.anisotropic {
+        return Err(Failure::usage(format!("--anisotropic: rule {} knows one width", rule.id)));
+    }
+    let fits = matches!(rule.method, rules::Method::Fit);
+    if args.normals == Normals::Fit && !fits {
+        return Err(Failure::usage(format!("--normals fit: rule {} stands about the mean normal", rule.id)));
+    }
+    if args.objective == Aim::Reflected && !fits {
+        return Err(Failure::usage(format!("--objective reflected: rule {} is no search", rule.id)));
+    }
+    if !args.normal_scale.is_finite() || args.normal_scale < 0.0 {
+        return Err(Failure::usage(format!("--normal-scale {} must not be negative", args.normal_scale)));
+    }
+    if args.name.is_empty() || args.name.contains(['/', '\\', '\0']) || args.name.starts_with('.') {
+        return Err(Failure::usage(format!("--name `{}` is not how a file name begins", args.name)));
+    }
+    Ok(MapRequest {
+        name: args.name.clone(),
+        normal: args.normal.as_ref().map(|path| normal(args, path)).transpose()?,
+        roughness: roughness(args)?,
+        factor: args.factor,
+        filter: maps::Settings {
+            rule,
+            centre: if args.normals == Normals::Fit { Centre::Free } else { Centre::Mean },
+            shape: if args.anisotropic { Shape::Anisotropic } else { Shape::Isotropic },
+            effort: if args.exact { Effort::Exact } else { Effort::Fast },
+            objective: if args.objective == Aim::Reflected {
+                Objective::Reflected
+            } else {
+                Objective::Normals
+            },
+        },
+        outputs: args.format.iter().map(|id| format(args, id)).collect::<Result<_, _>>()?,
+        check: args.check,
+        compare: args.compare,
+    })
+}
+
+fn normal(args: &Args, path: &std::path::Path) -> Result<Input, Failure> {
+    let wrap = match args.wrap {
+        WrapMode::Repeat => Wrap::Repeat,
+        WrapMode::Mirror => Wrap::Mirror,
+        WrapMode::Clamp => Wrap::Clamp,
+    };
+    let least = if args.derive_z { 2 } else { 3 };
+    let mut names = args.normal_channels.clone();
+    if names.len() < least || names.len() > 3 {
+        let given = names.join(",");
+        return Err(Failure::usage(format!("--normal-channels {given}: {least} names are needed")));
+    }
+    names.resize(3, String::new());
+    let [x, y, z] = [0, 1, 2].map(|i| std::mem::take(&mut names[i]));
+    Ok(Input {
+        path: path.to_owned(),
+        channels: [x, y, z],
+        convention: Convention {
+            green_down: args.green_down,
+            derive_z: args.derive_z,
+            scale: args.normal_scale,
+            mend: args.mend_normals,
+        },
+        signed: args.signed,
+        wrap: [wrap; 2],
+        resample: args.resample,
+    })
+}
+
+fn roughness(args: &Args) -> Result<RoughnessInput, Failure> {
+    let from = args.from.as_deref().map(|id| from(args, id)).transpose()?;
+    Ok(match args.roughness.parse::<f64>() {
+        Ok(r) => RoughnessInput::Constant(if args.gloss { 1.0 - r } else { r }),
+        Err(_) => RoughnessInput::Image {
+            path: PathBuf::from(&args.roughness),
+            channel: args.channel.clone(),
+            space: if args.srgb { Space::Srgb } else { Space::Linear },
+            gloss: args.gloss,
+            single: args.single,
+            from,
+        },
+    })
+}
+
+/// What the codes tell of.
+fn from(args: &Args, id: &str) -> Result<FromLobe, Failure> {
+    let usable = || CONVERSIONS.iter().filter(|c| c.numbers.len() == 1);
+    let conversion = usable().find(|c| c.id == id).ok_or_else(|| {
+        let ids: Vec<&str> = usable().map(|c| c.id).collect();
+        Failure::usage(format!("--from {id}: parametrisations of one number are {}", ids.join(", ")))
+    })?;
+    let [lo, hi] = args.range[..] else {
+        return Err(Failure::usage("--range: two numbers are needed, as LO,HI"));
+    };
+    let by = if args.formula { By::Formula } else { By::Nearest };
+    Ok(FromLobe { conversion, range: [lo, hi], log: args.log, by })
+}
+
+/// A container with its storages.
+fn format(args: &Args, id: &str) -> Result<Output, Failure> {
+    let Some(container) = CONTAINERS.into_iter().find(|c| *c == id) else {
+        let message = format!("--format {id}: maps are written as {}", CONTAINERS.join(", "));
+        return Err(Failure::usage(message));
+    };
+    let mut output = Output::new(container);
+    let pick = |option: &str, given: &Option<String>, usual: Storage| -> Result<Storage, Failure> {
+        let Some(id) = given else { return Ok(usual) };
+        let allowed = storages(container);
+        allowed.iter().copied().find(|s| s.id() == id).ok_or_else(|| {
+            let ids: Vec<&str> = allowed.iter().map(|s| s.id()).collect();
+            Failure::usage(format!("--{option} {id}: {container} stores maps as {}", ids.join(", ")))
+        })
+    };
+    output.roughness = pick("roughness-storage", &args.roughness_storage, output.roughness)?;
+    output.normal = pick("normal-storage", &args.normal_storage, output.normal)?;
+    Ok(output)
+}
+
+/// What was written, level by level.
+fn summary(outcome: &MapOutcome) -> String {
+    let record = &outcome.record;
+    let mut out =
+        format!("{}: rule {}, normals {}, {}\n", record.name, record.rule, record.normals, record.shape);
+    out.push_str(
+        "D is half the integral of |footprint - lobe|: 0 the same, 1 disjoint\n\
+         level     size       roughness       D mean   largest   measured (largest miss)   stored\n",
+    );
+    for (k, level) in record.levels.iter().enumerate() {
+        let [w, h] = level.size;
+        let [lo, hi] = level.roughness;
+        let mut line = format!("{k:>5} {:>11}  {lo:.4} .. {hi:.4}", format!("{w}x{h}"));
+        if k > 0 {
+            line.push_str(&format!("   {:.4}    {:.4}", level.mean, level.largest));
+        }
+        if let Some(m) = &level.measured {
+            line.push_str(&format!("    {:.4} ({:.4})    {:>18.4}", m.mean, m.miss, m.stored_mean));
+        }
+        let mut told = |n: usize, what: &str| {
+            if n > 0 {
+                line.push_str(&format!("  {n} {what}"));
+            }
+        };
+        told(level.at_limit, "at the limit alpha = 1");
+        told(level.hopeless, "with D >= 0.5");
+        out.push_str(&line);
+        out.push('\n');
+    }
+    for rule in
+        record.levels.iter().filter_map(|l| l.measured.as_ref()).flat_map(|m| &m.rules).map(|r| r.rule).fold(
+            Vec::new(),
+            |mut seen: Vec<&str>, id| {
+                if !seen.contains(&id) {
+                    seen.push(id);
+                }
+                seen
+            },
+        )
+    {
+        let means = record.levels.iter().filter_map(|l| l.measured.as_ref());
+        let means: Vec<String> = means
+            .filter_map(|m| m.rules.iter().find(|r| r.rule == rule))
+            .map(|r| format!("{:.4}", r.mean))
+            .collect();
+        out.push_str(&format!("rule {rule:<10} mean D of levels 1..: {}\n", means.join(" ")));
+    }
+    for place in record.worst.iter().take(5) {
+        let limit = if place.at_limit { ", wants alpha > 1" } else { "" };
+        let d = short(f64::from(place.distance));
+        out.push_str(&format!("worst: level {} ({}, {}) D {d}{limit}\n", place.level, place.x, place.y));
+    }
+    out.push_str(&format!("{} files written, {} unchanged", outcome.written, outcome.unchanged));
+    out
+}
+
+impl From<MapError> for Failure {
+    fn from(error: MapError) -> Failure {
+        use crate::encode::{EncodeError, ReadError};
+        use crate::maps::FilterError;
+        let error = match error {
+            MapError::Run(e) => return Failure::from(e),
+            other => other,
+        };
+        let exit = match &error {
+            MapError::Filter(FilterError::Cancelled(_))
+            | MapError::Read { source: ReadError::Cancelled(_), .. }
+            | MapError::Encode { source: EncodeError::Cancelled(_), .. } => {
+                return Failure::new(Exit::Interrupted, "interrupted; nothing was written");
+            }
+            MapError::Read { source: ReadError::Io { .. }, .. } => Exit::Io,
+            MapError::Nothing | MapError::Number { .. } => Exit::Usage,
+            MapError::Encode { source, .. } => Exit::of_encode(source),
+            _ => Exit::Input,
+        };
+        Failure::new(exit, error)
+    }
+}

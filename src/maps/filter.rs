@@ -1,0 +1,291 @@
+//! All levels of a pair of maps: every texel's footprint to its lobe, row by row on all threads.
+//!
+//! A footprint is gathered from the texels themselves up to level [`KEPT`]; there it is merged to at most
+//! [`MOST_FACETS`] facets, which the next levels are gathered from. So the work of a level is
+//! proportional to its texels, and that of all of them to the texels of the first. A texel depends on nothing but its
+//! footprint: the same bytes on any number of threads.
+
+use super::fit::{Centre, Effort, Fitter, Shape};
+use super::footprint::{Footprint, MOST_FACETS};
+use super::lobe::{Facet, Lobe};
+use super::reflected;
+use super::rules::{Method, Rule};
+use super::surface::Surface;
+use crate::cancel::{Cancel, Cancelled};
+use crate::picture::{Coverage, halved};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// The level whose footprints are merged and kept.
+pub const KEPT: usize = 3;
+
+/// What is asked for.
+#[derive(Debug, Clone, Copy)]
+pub struct Settings {
+    /// The rule.
+    pub rule: &'static Rule,
+    /// Where the normal comes from.
+    pub centre: Centre,
+    /// How many widths.
+    pub shape: Shape,
+    /// How much work.
+    pub effort: Effort,
+    /// What is made small by the fit.
+    pub objective: Objective,
+}
+
+/// What the fit makes small.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Objective {
+    /// D of the distributions of normals.
+    Normals,
+    /// The error of the reflected light in four views: see [`super::reflected`].
+    Reflected,
+}
+
+/// One level of lobes.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Level {
+    /// Width and height in texels.
+    pub size: [usize; 2],
+    /// The texels, rows from the top.
+    pub texels: Vec<Texel>,
+}
+
+/// What is written of a texel, and what is known of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Texel {
+    /// Unit normal.
+    pub normal: [f32; 3],
+    /// √ of the smaller width.
+    pub roughness: f32,
+    /// √ of the larger width.
+    pub roughness_max: f32,
+    /// Direction of the larger width, rad from the tangent.
+    pub angle: f32,
+    /// D to the footprint.
+    pub distance: f32,
+    /// How far D may be wrong.
+    pub doubt: f32,
+    /// A lobe wider than α = 1 would be nearer.
+    pub at_limit: bool,
+}
+
+impl Texel {
+    /// The lobe that is written.
+    #[must_use]
+    pub fn lobe(&self) -> Lobe {
+        let [x, y, z] = self.normal.map(f64::from);
+        let square = |r: f32| f64::from(r) * f64::from(r);
+        Lobe {
+            normal: DVec3::new(x, y, z).normalize(),
+            alpha_max: square(self.roughness_max),
+            alpha_min: square(self.roughness),
+            angle: f64::from(self.angle),
+        }
+    }
+}
+
+/// Why there are no levels.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FilterError {
+    /// Stopped from outside.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The normals of a footprint cancel.
+    #[error(
+        "level {level}, texel ({x}, {y}): the normals of the footprint cancel, there is no lobe about their mean"
+    )]
+    NoMean {
+        /// Level.
+        level: usize,
+        /// Column.
+        x: usize,
+        /// Row.
+        y: usize,
+    },
+}
+
+/// A facet between levels.
+#[derive(Debug, Clone, Copy)]
+struct Kept {
+    normal: [f32; 3],
+    roughness: f32,
+    weight: f32,
+}
+
+/// The merged footprints of a level: facets of all texels, one after the other, and where those of a texel begin.
+#[derive(Debug, Default)]
+struct Store {
+    facets: Vec<Kept>,
+    starts: Vec<usize>,
+    errors: Vec<f32>,
+    width: usize,
+}
+
+/// Where footprints are gathered from.
+#[derive(Clone, Copy)]
+enum Source<'a> {
+    Surface(&'a Surface),
+    Store(&'a Store),
+}
+
+impl Source<'_> {
+    fn gather(&self, across: &[(usize, f64)], down: &[(usize, f64)]) -> (Vec<Facet>, f64) {
+        let mut facets = Vec::with_capacity(across.len() * down.len());
+        let mut error = 0.0;
+        for (y, wy) in down {
+            for (x, wx) in across {
+                let weight = wx * wy;
+                match self {
+                    Source::Surface(s) => facets.push(s.facet(y * s.size[0] + x, weight)),
+                    Source::Store(s) => {
+                        let texel = y * s.width + x;
+                        error += weight * f64::from(s.errors[texel]);
+                        let own = &s.facets[s.starts[texel]..s.starts[texel + 1]];
+                        facets.extend(own.iter().map(|k| k.facet(weight)));
+                    }
+                }
+            }
+        }
+        (facets, error)
+    }
+}
+
+impl Kept {
+    fn facet(&self, weight: f64) -> Facet {
+        let [x, y, z] = self.normal.map(f64::from);
+        let r = f64::from(self.roughness);
+        let normal = DVec3::new(x, y, z).normalize();
+        Facet { normal, alpha: r * r, weight: weight * f64::from(self.weight) }
+    }
+
+    #[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]
+    fn of(f: &Facet) -> Kept {
+        let n = f.normal;
+        let (roughness, weight) = (f.alpha.sqrt() as f32, f.weight as f32);
+        Kept { normal: [n.x as f32, n.y as f32, n.z as f32], roughness, weight }
+    }
+}
+
+/// All levels, the first as it is. `progress` is told of texels that are done and of their number.
+///
+/// # Errors
+/// [`FilterError`].
+pub fn filter(
+    surface: &Surface,
+    settings: &Settings,
+    cancel: &Cancel,
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Result<Vec<Level>, FilterError> {
+    let sizes = halved(surface.size[0], surface.size[1]);
+    let total: usize = sizes.iter().skip(1).map(|s| s[0] * s[1]).sum();
+    let done = AtomicUsize::new(0);
+    let mut levels = vec![first(surface)];
+    let mut store: Option<Store> = None;
+    let mut from = 0;
+    for level in 1..sizes.len() {
+        let source = store.as_ref().map_or(Source::Surface(surface), Source::Store);
+        let keep = level >= KEPT;
+        let cover = [0, 1].map(|axis| {
+            let step = |k: usize| Coverage::new(sizes[k][axis], sizes[k + 1][axis]);
+            (from + 1..level).fold(step(from), |c, k| c.then(&step(k)))
+        });
+        let job = Job { settings, source, cover: &cover, level, size: sizes[level], keep };
+        let tell = |n: usize| progress(done.fetch_add(n, Ordering::Relaxed) + n, total);
+        let (found, kept) = job.run(cancel, &tell)?;
+        levels.push(found);
+        if keep {
+            (store, from) = (Some(kept), level);
+        }
+    }
+    Ok(levels)
+}
+
+/// The first level: the maps as they are.
+fn first(surface: &Surface) -> Level {
+    let texel = |i: usize| {
+        let (normal, roughness) = (surface.normals.at(i), surface.roughness.at(i));
+        Texel {
+            normal,
+            roughness,
+            roughness_max: roughness,
+            angle: 0.0,
+            distance: surface.residual.at(i),
+            doubt: 0.0,
+            at_limit: false,
+        }
+    };
+    let size = surface.size;
+    Level { size, texels: (0..size[0] * size[1]).map(texel).collect() }
+}
+
+/// The work of a level.
+struct Job<'a> {
+    settings: &'a Settings,
+    source: Source<'a>,
+    cover: &'a [Coverage; 2],
+    level: usize,
+    size: [usize; 2],
+    keep: bool,
+}
+
+/// A row of texels, with the footprints that are kept of them.
+type Row = Vec<(Texel, Vec<Kept>, f32)>;
+
+impl Job<'_> {
+    fn run(&self, cancel: &Cancel, tell: &(dyn Fn(usize) + Sync)) -> Result<(Level, Store), FilterError> {
+        let [width, height] = self.size;
+        let one = |fitter: &mut Fitter, y: usize| -> Result<Row, FilterError> {
+            cancel.check()?;
+            let row: Result<Row, FilterError> = (0..width).map(|x| self.texel(fitter, x, y)).collect();
+            tell(width);
+            row
+        };
+        let new = || Fitter::new(self.settings.effort);
+        let rows: Result<Vec<Row>, FilterError> = (0..height).into_par_iter().map_init(new, one).collect();
+        let mut level = Level { size: self.size, texels: Vec::with_capacity(width * height) };
+        let mut store = Store { width, starts: vec![0], ..Store::default() };
+        for (texel, kept, error) in rows?.into_iter().flatten() {
+            level.texels.push(texel);
+            if self.keep {
+                store.facets.extend(kept);
+                store.starts.push(store.facets.len());
+                store.errors.push(error);
+            }
+        }
+        Ok((level, store))
+    }
+
+    #[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]
+    fn texel(&self, fitter: &mut Fitter, x: usize, y: usize) -> Result<(Texel, Vec<Kept>, f32), FilterError> {
+        let (facets, error) = self.source.gather(self.cover[0].of(x), self.cover[1].of(y));
+        let none = FilterError::NoMean { level: self.level, x, y };
+        let mut footprint = Footprint::new(facets).ok_or(none)?;
+        footprint.merge_error = error;
+        if self.settings.effort == Effort::Fast || self.keep {
+            let most = if self.settings.effort == Effort::Exact { 64 * MOST_FACETS } else { MOST_FACETS };
+            footprint = footprint.merged(most);
+        }
+        let Settings { rule, centre, shape, .. } = *self.settings;
+        let mut fitted = rule.apply(fitter, &footprint, centre, shape);
+        if self.settings.objective == Objective::Reflected && matches!(rule.method, Method::Fit) {
+            fitted = reflected::fit(&footprint, &fitted.lobe, centre, shape);
+        }
+        let lobe = fitted.lobe;
+        let n = lobe.normal;
+        let texel = Texel {
+            normal: [n.x as f32, n.y as f32, n.z as f32],
+            roughness: lobe.alpha_min.sqrt() as f32,
+            roughness_max: lobe.alpha_max.sqrt() as f32,
+            angle: lobe.angle as f32,
+            distance: fitted.distance as f32,
+            doubt: fitted.doubt as f32,
+            at_limit: fitted.at_limit,
+        };
+        let kept = if self.keep { footprint.facets.iter().map(Kept::of).collect() } else { Vec::new() };
+        Ok((texel, kept, footprint.merge_error as f32))
+    }
+}

@@ -1,0 +1,114 @@
+//! Decoded images: planes of f32 with names, and their pyramids. Knows nothing of what the numbers mean.
+//!
+//! Rows run from the top. Codes of 8 and 16 bits are divided by their largest; a colour space is undone only where it is
+//! asked for. Palettes, interlacing and one-bit greys are unfolded by the decoder. Files are not trusted: sizes are checked
+//! before memory is asked for ([`MAX_PIXELS`]), and what is damaged is an error.
+
+mod pyramid;
+mod read;
+mod resample;
+
+pub use pyramid::{Coverage, count_levels, halved, shrink};
+pub use read::{MAGIC, read_bytes};
+pub use resample::Wrap;
+
+/// Most pixels of a picture: 8192 x 8192.
+pub const MAX_PIXELS: usize = 1 << 26;
+
+/// A decoded image.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    /// Width in pixels.
+    pub width: usize,
+    /// Height in pixels.
+    pub height: usize,
+    /// Channels in file order.
+    pub planes: Vec<Plane>,
+}
+
+/// One channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plane {
+    /// Name: `R`, `G`, `B`, `A`, `Y`, or as in the file.
+    pub name: String,
+    /// Values, rows from the top.
+    pub values: Vec<f32>,
+}
+
+/// What the codes of colours mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Space {
+    /// The number itself: parameters, normals.
+    Linear,
+    /// The transfer curve of sRGB (IEC 61966-2-1).
+    Srgb,
+}
+
+/// Why an image cannot be read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PictureError {
+    /// Of no kind that is read here.
+    #[error("not a PNG or JPEG image (it begins with {0:02x?})")]
+    Unknown(
+        /// The first bytes.
+        Vec<u8>,
+    ),
+    /// More pixels than are read.
+    #[error("{width} x {height} pixels: from 1 to {MAX_PIXELS} (8192 x 8192) are read")]
+    Pixels {
+        /// Width in pixels.
+        width: usize,
+        /// Height in pixels.
+        height: usize,
+    },
+    /// Damaged, cut short, or of a kind that the decoder does not know.
+    #[error("{format}: {fault}")]
+    Damaged {
+        /// `png` or `jpeg`.
+        format: &'static str,
+        /// The decoder's message.
+        fault: String,
+    },
+    /// A channel that is not there.
+    #[error("no channel `{wanted}`; there is {got}")]
+    Channel {
+        /// The name asked for.
+        wanted: String,
+        /// Names in the file.
+        got: String,
+    },
+}
+
+impl Picture {
+    /// A channel by its name. Grey serves for any of the colours, and `R` for grey.
+    ///
+    /// # Errors
+    /// [`PictureError::Channel`] if there is none.
+    pub fn plane(&self, name: &str) -> Result<&Plane, PictureError> {
+        let find = |name: &str| self.planes.iter().find(|p| p.name == name);
+        let grey = || if ["R", "G", "B"].contains(&name) { find("Y") } else { None };
+        find(name).or_else(grey).ok_or_else(|| PictureError::Channel {
+            wanted: name.to_owned(),
+            got: self.planes.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", "),
+        })
+    }
+
+    /// Column and row of a texel.
+    #[must_use]
+    pub const fn place(&self, texel: usize) -> [usize; 2] {
+        [texel % self.width, texel / self.width]
+    }
+}
+
+impl Space {
+    /// A code in [0, 1] as a linear number.
+    #[must_use]
+    pub fn decode(self, code: f32) -> f32 {
+        match self {
+            Space::Linear => code,
+            Space::Srgb if code <= 0.040_45 => code / 12.92,
+            Space::Srgb => libm::powf((code + 0.055) / 1.055, 2.4),
+        }
+    }
+}

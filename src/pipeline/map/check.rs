@@ -1,0 +1,229 @@
+//! Measures texels of the written maps against the texels that they stand for, before and after storage.
+//!
+//! The filter works on merged footprints; here every facet of the first level counts (a regular choice of [`MOST`] where there are more).
+
+use super::output::{Kind, Map};
+use super::{MapError, MapRequest};
+use crate::cancel::Cancel;
+use crate::encode::mips::{self, Mips};
+use crate::maps::{
+    Centre, Effort, Facet, Fitter, Footprint, Level, Lobe, Objective, RULES, Surface, Texel, reflected, rules,
+};
+use crate::picture::{Coverage, halved};
+use glam::DVec3;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Most facets of a footprint that is measured.
+const MOST: usize = 4096;
+
+/// Worst texels of a level that are measured in any case.
+const WORST: usize = 20;
+
+/// What the measurement of a level came to.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Measured {
+    /// Texels that were measured: a seeded choice, and the twenty worst.
+    pub texels: usize,
+    /// Mean of D before storage.
+    pub mean: f64,
+    /// Largest D before storage.
+    pub largest: f64,
+    /// Largest difference between D as it was told and as it was measured.
+    pub miss: f64,
+    /// Mean of D after storage in the first output.
+    pub stored_mean: f64,
+    /// Largest D after storage.
+    pub stored_largest: f64,
+    /// The published rules at the same texels, if they were asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub rules: Vec<RuleMeasured>,
+}
+
+/// What a rule came to.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RuleMeasured {
+    /// Id.
+    pub rule: &'static str,
+    /// Mean of D.
+    pub mean: f64,
+    /// Largest D.
+    pub largest: f64,
+}
+
+/// One texel: D told, before storage, after it, and of the rules.
+struct Sample {
+    told: f64,
+    before: f64,
+    after: f64,
+    rules: Vec<f64>,
+}
+
+pub(super) fn measure(
+    request: &MapRequest,
+    surface: &Surface,
+    levels: &[Level],
+    maps: &[Map],
+    cancel: &Cancel,
+) -> Result<Vec<Option<Measured>>, MapError> {
+    let sizes = halved(surface.size[0], surface.size[1]);
+    let mut out = vec![None];
+    let mut cover = [0, 1].map(|axis| Coverage::new(surface.size[axis], surface.size[axis]));
+    for (k, level) in levels.iter().enumerate().skip(1) {
+        cover = [0, 1].map(|axis| cover[axis].then(&Coverage::new(sizes[k - 1][axis], sizes[k][axis])));
+        let chosen = choose(level, k, request.check);
+        let stored = stored(request, maps, k, cancel)?;
+        let one = |fitter: &mut Fitter, texel: &usize| -> Result<Option<Sample>, MapError> {
+            cancel.check()?;
+            let facets = gather(surface, &cover, texel % level.size[0], texel / level.size[0]);
+            let Some(footprint) = Footprint::new(facets) else { return Ok(None) };
+            let own = &level.texels[*texel];
+            let light = request.filter.objective == Objective::Reflected;
+            let mut distance = |lobe: &Lobe| {
+                if light {
+                    reflected::distance(lobe, &footprint)
+                } else {
+                    fitter.distance(lobe, &footprint).0
+                }
+            };
+            let before = distance(&own.lobe());
+            let after = distance(&stored.lobe(*texel, own));
+            let rules = if request.compare { compare(fitter, &footprint, request) } else { Vec::new() };
+            Ok(Some(Sample { told: f64::from(own.distance), before, after, rules }))
+        };
+        let samples: Result<Vec<Option<Sample>>, MapError> =
+            chosen.par_iter().map_init(|| Fitter::new(Effort::Fast), one).collect();
+        let samples: Vec<Sample> = samples?.into_iter().flatten().collect();
+        out.push((!samples.is_empty()).then(|| sum(&samples)));
+    }
+    Ok(out)
+}
+
+fn compare(fitter: &mut Fitter, footprint: &Footprint, request: &MapRequest) -> Vec<f64> {
+    let one = |rule: &&rules::Rule| match rule.method {
+        rules::Method::Fit => 0.0,
+        rules::Method::Formula(_) => {
+            rule.apply(fitter, footprint, Centre::Mean, request.filter.shape).distance
+        }
+    };
+    RULES.iter().map(one).collect()
+}
+
+fn sum(samples: &[Sample]) -> Measured {
+    let n = samples.len() as f64;
+    let mean = |of: &dyn Fn(&Sample) -> f64| samples.iter().map(of).sum::<f64>() / n;
+    let largest = |of: &dyn Fn(&Sample) -> f64| samples.iter().map(of).fold(0.0, f64::max);
+    let compared = samples.first().is_some_and(|s| !s.rules.is_empty());
+    let published = RULES.iter().enumerate().filter(|(_, r)| compared && r.id != "fit");
+    Measured {
+        texels: samples.len(),
+        mean: mean(&|s| s.before),
+        largest: largest(&|s| s.before),
+        miss: largest(&|s| (s.before - s.told).abs()),
+        stored_mean: mean(&|s| s.after),
+        stored_largest: largest(&|s| s.after),
+        rules: published
+            .map(|(i, r)| RuleMeasured {
+                rule: r.id,
+                mean: mean(&|s| s.rules[i]),
+                largest: largest(&|s| s.rules[i]),
+            })
+            .collect(),
+    }
+}
+
+/// Texels of a level: all, or a seeded choice and the worst.
+fn choose(level: &Level, k: usize, count: usize) -> Vec<usize> {
+    let n = level.texels.len();
+    if n <= count + WORST {
+        return (0..n).collect();
+    }
+    let mut worst: Vec<usize> = (0..n).collect();
+    worst.sort_by(|a, b| level.texels[*b].distance.total_cmp(&level.texels[*a].distance));
+    worst.truncate(WORST);
+    #[allow(clippy::cast_possible_truncation, reason = "a remainder by a length")]
+    let seeded = (0..count).map(|i| (mixed((k as u64) << 32 | i as u64) % n as u64) as usize);
+    let mut chosen: Vec<usize> = worst.into_iter().chain(seeded).collect();
+    chosen.sort_unstable();
+    chosen.dedup();
+    chosen
+}
+
+/// A number that looks like chance: the finaliser of splitmix64.
+fn mixed(seed: u64) -> u64 {
+    let z = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// The facets under a texel: all, or every so many of each line.
+fn gather(surface: &Surface, cover: &[Coverage; 2], x: usize, y: usize) -> Vec<Facet> {
+    let (across, down) = (cover[0].of(x), cover[1].of(y));
+    let side = MOST.isqrt();
+    let thin = |line: &[(usize, f64)]| -> Vec<(usize, f64)> {
+        let step = line.len().div_ceil(side).max(1);
+        let kept: Vec<(usize, f64)> = line.iter().skip(step / 2).step_by(step).copied().collect();
+        let total: f64 = kept.iter().map(|p| p.1).sum();
+        kept.into_iter().map(|(i, w)| (i, w / total)).collect()
+    };
+    let (across, down) = (thin(across), thin(down));
+    let row = |(y, wy): &(usize, f64)| {
+        let (y, wy) = (*y, *wy);
+        across.iter().map(move |(x, wx)| (y * surface.size[0] + x, wx * wy)).collect::<Vec<_>>()
+    };
+    down.iter().flat_map(row).map(|(texel, weight)| surface.facet(texel, weight)).collect()
+}
+
+/// What a reader of the first output finds on a level.
+struct Stored {
+    roughness: Vec<f32>,
+    normal: Option<(Vec<f32>, usize, f32)>,
+    anisotropy: Option<Vec<f32>>,
+}
+
+fn stored(request: &MapRequest, maps: &[Map], k: usize, cancel: &Cancel) -> Result<Stored, MapError> {
+    let Some(output) = request.outputs.first() else {
+        return Ok(Stored { roughness: Vec::new(), normal: None, anisotropy: None });
+    };
+    let values = |kind: Kind| -> Result<Option<(Vec<f32>, usize)>, MapError> {
+        let Some(map) = maps.iter().find(|m| m.kind == kind) else { return Ok(None) };
+        let (channels, levels) = (&map.channels, &map.levels);
+        let storage = output.storage(kind);
+        let pyramid = Mips { channels, levels, storage, provenance_json: "", identity: "", cancel };
+        let failed = |source| MapError::Encode { map: kind.id().to_owned(), source };
+        Ok(Some((mips::stored(&pyramid, &levels[k]).map_err(failed)?, channels.len())))
+    };
+    let roughness = values(Kind::Roughness)?.map_or_else(Vec::new, |(v, n)| {
+        let map = maps.iter().find(|m| m.kind == Kind::Roughness);
+        let own = map.and_then(|m| m.channels.iter().position(|c| c.id == "roughness")).unwrap_or(0);
+        v.into_iter().skip(own).step_by(n).collect()
+    });
+    let down = request.normal.as_ref().is_some_and(|n| n.convention.green_down);
+    let normal = values(Kind::Normal)?.map(|(v, n)| (v, n, if down { -1.0 } else { 1.0 }));
+    let anisotropy = values(Kind::Anisotropy)?.map(|(v, _)| v);
+    Ok(Stored { roughness, normal, anisotropy })
+}
+
+impl Stored {
+    /// The lobe that a shader makes of a texel; what is not written is taken as it was found.
+    fn lobe(&self, texel: usize, own: &Texel) -> Lobe {
+        let mut lobe = own.lobe();
+        let Some(r) = self.roughness.get(texel).copied().map(f64::from) else { return lobe };
+        lobe.alpha_min = r * r;
+        lobe.alpha_max = r * r;
+        if let Some((values, n, sense)) = &self.normal {
+            let t = &values[texel * n..(texel + 1) * n];
+            let (x, y) = (f64::from(t[0]), f64::from(t[1]) * f64::from(*sense));
+            let z = t.get(2).map_or_else(|| (1.0 - x * x - y * y).max(0.0).sqrt(), |z| f64::from(*z));
+            lobe.normal = DVec3::new(x, y, z).normalize();
+        }
+        if let Some(values) = &self.anisotropy {
+            let t = &values[3 * texel..3 * texel + 3];
+            let s = f64::from(t[2]);
+            lobe.alpha_max = lobe.alpha_min + (1.0 - lobe.alpha_min) * s * s;
+            lobe.angle = libm::atan2(f64::from(t[1]), f64::from(t[0]));
+        }
+        lobe
+    }
+}

@@ -1,0 +1,243 @@
+//! What the files of a map say of themselves: inputs, rule, and how far every level is from the texels that it stands for.
+
+use super::check::Measured;
+use super::input::Sources;
+use super::output::File;
+use super::{MapRequest, RoughnessInput};
+use crate::encode::Storage;
+use crate::grid::Channel;
+use crate::maps::{Centre, Effort, Level, Objective, Shape};
+use serde::Serialize;
+
+/// Version of this layout.
+const SCHEMA: u32 = 1;
+
+/// D from which a lobe says little of its footprint: such texels are counted, and the worst of them listed.
+pub(super) const HOPELESS: f32 = 0.5;
+
+/// Texels that are listed.
+const LISTED: usize = 20;
+
+/// A map and its certificate. No clock, host or path.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MapRecord {
+    /// Version of this layout.
+    pub schema: u32,
+    /// Program and version.
+    pub tool: String,
+    /// Name of the job and hash of what it was asked.
+    pub recipe: Job,
+    /// How the names of its files begin.
+    pub name: String,
+    /// What was read.
+    pub inputs: Vec<InputRecord>,
+    /// Factor of the roughness that is inside the map: the material has 1.
+    pub factor: f64,
+    /// Id of the rule.
+    pub rule: String,
+    /// Its formula.
+    pub formula: String,
+    /// `mean` or `fit`.
+    pub normals: &'static str,
+    /// `isotropic` or `anisotropic`.
+    pub shape: &'static str,
+    /// `fast` or `exact`.
+    pub effort: &'static str,
+    /// `normals` or `reflected`: what the fit makes small, and what `distance` is.
+    pub objective: &'static str,
+    /// Levels, the largest first.
+    pub levels: Vec<LevelRecord>,
+    /// Texels that the lobe is farthest from, of all levels.
+    pub worst: Vec<Place>,
+}
+
+/// Name and hash, as tables have them.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Job {
+    /// Name.
+    pub name: String,
+    /// blake3 of what was asked, and of the inputs.
+    pub hash: String,
+}
+
+/// A file that was read.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct InputRecord {
+    /// `normal` or `roughness`.
+    pub role: &'static str,
+    /// Its name, without the folder; the number, if it is one.
+    pub file: String,
+    /// blake3 of its bytes; empty for a number.
+    pub blake3: String,
+}
+
+/// A texel that the lobe is far from.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Place {
+    /// Level.
+    pub level: usize,
+    /// Column.
+    pub x: usize,
+    /// Row.
+    pub y: usize,
+    /// D.
+    pub distance: f32,
+    /// A lobe wider than alpha = 1 would be nearer.
+    pub at_limit: bool,
+}
+
+/// What is known of a level.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LevelRecord {
+    /// Width and height in texels.
+    pub size: [usize; 2],
+    /// Least and largest roughness.
+    pub roughness: [f32; 2],
+    /// Mean of D.
+    pub mean: f64,
+    /// Largest D.
+    pub largest: f32,
+    /// Largest doubt of D.
+    pub doubt: f32,
+    /// Texels that want a lobe wider than alpha = 1.
+    pub at_limit: usize,
+    /// Texels with D of 0.5 and more: no lobe tells what is there.
+    pub hopeless: usize,
+    /// What a measurement against the texels of the maps came to; none for the first level.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured: Option<Measured>,
+}
+
+impl MapRecord {
+    /// The text of one file.
+    pub(super) fn of(&self, map: &str, channels: &[Channel], storage: Storage) -> String {
+        let mut value = serde_json::to_value(self).unwrap_or_default();
+        if let Some(fields) = value.as_object_mut() {
+            fields.insert("map".to_owned(), map.into());
+            fields.insert("channels".to_owned(), serde_json::to_value(channels).unwrap_or_default());
+            fields.insert("storage".to_owned(), storage.id().into());
+        }
+        value.to_string()
+    }
+}
+
+pub(super) fn record(
+    request: &MapRequest,
+    sources: &Sources,
+    levels: &[Level],
+    measured: Vec<Option<Measured>>,
+) -> MapRecord {
+    let filter = &request.filter;
+    let mut inputs: Vec<InputRecord> = sources
+        .files
+        .iter()
+        .map(|(role, file, blake3)| InputRecord { role, file: file.clone(), blake3: blake3.clone() })
+        .collect();
+    if let RoughnessInput::Constant(r) = &request.roughness {
+        inputs.push(InputRecord { role: "roughness", file: r.to_string(), blake3: String::new() });
+    }
+    let levels_told = levels.iter().zip(measured).map(|(l, m)| level(l, m)).collect();
+    let mut record = MapRecord {
+        schema: SCHEMA,
+        tool: crate::pipeline::manifest::tool(),
+        recipe: Job { name: "map".to_owned(), hash: String::new() },
+        name: request.name.clone(),
+        inputs,
+        factor: request.factor,
+        rule: filter.rule.id.to_owned(),
+        formula: filter.rule.formula.to_owned(),
+        normals: if filter.centre == Centre::Free { "fit" } else { "mean" },
+        shape: if filter.shape == Shape::Anisotropic { "anisotropic" } else { "isotropic" },
+        effort: if filter.effort == Effort::Exact { "exact" } else { "fast" },
+        objective: if filter.objective == Objective::Reflected { "reflected" } else { "normals" },
+        levels: levels_told,
+        worst: worst(levels),
+    };
+    let text = serde_json::to_string(&record).unwrap_or_default();
+    let asked = format!("{text}{}{:?}", options(request), request.outputs);
+    record.recipe.hash = blake3::hash(asked.as_bytes()).to_hex().to_string();
+    record
+}
+
+/// What was asked of the inputs, without their paths: their bytes are in the record.
+fn options(request: &MapRequest) -> String {
+    let normal = request.normal.as_ref().map(|n| (&n.channels, n.convention, n.signed, n.wrap, n.resample));
+    let roughness = match &request.roughness {
+        RoughnessInput::Constant(r) => format!("{r}"),
+        RoughnessInput::Image { channel, space, gloss, single, from, path: _ } => {
+            let from = from.map(|f| (f.conversion.id, f.range, f.log, f.by));
+            format!("{channel} {space:?} {gloss} {single} {from:?}")
+        }
+    };
+    format!("{normal:?}{roughness}")
+}
+
+fn level(level: &Level, measured: Option<Measured>) -> LevelRecord {
+    let texels = &level.texels;
+    let fold = |f: fn(f32, f32) -> f32, of: fn(&crate::maps::Texel) -> f32, start: f32| {
+        texels.iter().map(of).fold(start, f)
+    };
+    LevelRecord {
+        size: level.size,
+        roughness: [fold(f32::min, |t| t.roughness, 1.0), fold(f32::max, |t| t.roughness, 0.0)],
+        mean: texels.iter().map(|t| f64::from(t.distance)).sum::<f64>() / texels.len().max(1) as f64,
+        largest: fold(f32::max, |t| t.distance, 0.0),
+        doubt: fold(f32::max, |t| t.doubt, 0.0),
+        at_limit: texels.iter().filter(|t| t.at_limit).count(),
+        hopeless: texels.iter().filter(|t| t.distance >= HOPELESS).count(),
+        measured,
+    }
+}
+
+/// The texels with the largest D, and those at the limit before others of the same D.
+fn worst(levels: &[Level]) -> Vec<Place> {
+    let mut all: Vec<Place> = Vec::new();
+    for (k, level) in levels.iter().enumerate().skip(1) {
+        let place = |(i, t): (usize, &crate::maps::Texel)| Place {
+            level: k,
+            x: i % level.size[0],
+            y: i / level.size[0],
+            distance: t.distance,
+            at_limit: t.at_limit,
+        };
+        all.extend(level.texels.iter().enumerate().map(place).filter(|p| p.distance > 0.0));
+        all.sort_by(|a, b| b.distance.total_cmp(&a.distance));
+        all.truncate(LISTED);
+    }
+    all
+}
+
+/// The manifest: as that of tables, each map with its files.
+pub(super) fn manifest(record: &MapRecord, files: &[File]) -> Vec<u8> {
+    let mut maps: Vec<&str> = Vec::new();
+    files.iter().for_each(|f| {
+        if !maps.contains(&f.map) {
+            maps.push(f.map);
+        }
+    });
+    let file = |f: &File| {
+        serde_json::json!({
+            "file": f.name,
+            "container": f.container,
+            "bytes": f.bytes.len(),
+            "blake3": blake3::hash(&f.bytes).to_hex().to_string(),
+            "storage": f.storage.id(),
+        })
+    };
+    let table = |map: &&str| {
+        let own: Vec<_> = files.iter().filter(|f| f.map == *map).map(file).collect();
+        serde_json::json!({ "name": format!("{}.{map}", record.name), "recipe": record.recipe, "files": own })
+    };
+    let tables: Vec<_> = maps.iter().map(table).collect();
+    let manifest = serde_json::json!({
+        "schema": crate::grid::provenance::SCHEMA,
+        "tool": record.tool,
+        "recipe": record.recipe.name,
+        "hash": record.recipe.hash,
+        "tables": tables,
+        "map": record,
+    });
+    let mut bytes = serde_json::to_vec_pretty(&manifest).unwrap_or_default();
+    bytes.push(b'\n');
+    bytes
+}

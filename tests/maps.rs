@@ -1,0 +1,8 @@
+//! Parameter maps: lobes, pictures, files, conversions.
+
+mod conversions;
+mod counted;
+mod footprints;
+mod map_files;
+mod map_pictures;
+mod tolerance;
