@@ -17,8 +17,8 @@ const AXES: &str = "name = 'x'\n[[table]]\nkind = 'dfg'\nname = 'a'\n[[table.axi
 /// The same with everything spelled out, other key order, other spellings of numbers and warps.
 const LONG: &str = r#"
 table = [{ name = "a", axis = [
-    { length = 0x40, id = "mu", warp = { exponent = 25e-2, scale = 3, power = 4, coupled = "alpha" }, domain = [0, 1], clamp = [-0.0, 1], offset = -0.0 },
-    { id = "roughness", length = 64, warp = "sqrt", domain = [1e-2, 1], texel = "endpoint", direction = "ascending" },
+    { length = 0x40, id = "mu", warp = { power = 5e-1 }, domain = [0, 1], clamp = [-0.0, 1], offset = -0.0 },
+    { id = "roughness", length = 64, warp = { one-minus-power = 1 }, texel = "endpoint", direction = "ascending" },
 ], waive = [], outputs = ["exr:half"], "on-miss" = "fail", reconstruction = "on", tolerance = 0.000244140625,
    params = { masking = "correlated", F90 = 1 }, model = "ggx_smith_correlated", layout = "scale-bias", kind = "dfg" }]
 name = "x"
