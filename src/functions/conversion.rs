@@ -222,16 +222,22 @@ pub static ALL: &[FunctionInfo] = &[FunctionInfo {
     notes: "D is half the integral of the difference of D cos over the hemisphere. No GGX is nearer to Beckmann than 0.17977.",
     also: &[],
     known: &[
-        known(&[("a", "6"), ("rule", "formula")], NO_ANGLES, 0.5, 1e-15, "closed form: sqrt(2 / 8)"),
+        known(&[("a", "6"), ("rule", "\"formula\"")], NO_ANGLES, 0.5, 1e-15, "closed form: sqrt(2 / 8)"),
         known(
-            &[("from", "beckmann"), ("a", "0.5"), ("rule", "formula"), ("part", "distance")],
+            &[("from", "\"beckmann\""), ("a", "0.5"), ("rule", "\"formula\""), ("part", "\"distance\"")],
             NO_ANGLES,
             0.203_632_2,
             1e-6,
             "sum over the hemisphere by another program",
         ),
         known(
-            &[("from", "ward"), ("a", "0.3"), ("b", "0.1"), ("rule", "formula"), ("part", "strength")],
+            &[
+                ("from", "\"ward\""),
+                ("a", "0.3"),
+                ("b", "0.1"),
+                ("rule", "\"formula\""),
+                ("part", "\"strength\""),
+            ],
             NO_ANGLES,
             0.471_404_520_791_031_7,
             1e-14,
