@@ -436,3 +436,19 @@ fn a_number_that_is_none_is_told() {
     let message = failed.unwrap_err().to_string();
     assert!(message.contains("nan.exr: level 0, texel (1, 1): a value is not finite"), "{message}");
 }
+
+/// The widest lobe there is, under normals that would widen it: it stays, and it is told.
+#[test]
+fn a_roughness_of_one_stays_one() {
+    let dir = tempfile::tempdir().unwrap();
+    let normal = bumps(dir.path(), 32);
+    for (centre, shape) in [(Centre::Mean, Shape::Isotropic), (Centre::Free, Shape::Anisotropic)] {
+        let mut request = request(Some(normal.clone()), RoughnessInput::Constant(1.0));
+        (request.filter.centre, request.filter.shape) = (centre, shape);
+        for rule in brdfbake::maps::RULES.iter().filter(|r| r.id == "fit" || centre == Centre::Mean) {
+            request.filter.rule = rule;
+            let done = bake(&request, &dir.path().join("o"));
+            assert!(done.record.levels.iter().all(|l| l.roughness == [1.0, 1.0]), "{}", rule.id);
+        }
+    }
+}

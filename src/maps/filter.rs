@@ -122,6 +122,8 @@ struct Store {
     facets: Vec<Kept>,
     starts: Vec<usize>,
     errors: Vec<f32>,
+    /// Smallest α of the texels themselves.
+    least: Vec<f64>,
     width: usize,
 }
 
@@ -133,24 +135,30 @@ enum Source<'a> {
 }
 
 impl Source<'_> {
-    fn gather(&self, across: &[(usize, f64)], down: &[(usize, f64)]) -> (Vec<Facet>, f64) {
+    /// Facets, what merging them has cost before, and the smallest α of the texels themselves.
+    fn gather(&self, across: &[(usize, f64)], down: &[(usize, f64)]) -> (Vec<Facet>, f64, f64) {
         let mut facets = Vec::with_capacity(across.len() * down.len());
-        let mut error = 0.0;
+        let (mut error, mut least) = (0.0, f64::INFINITY);
         for (y, wy) in down {
             for (x, wx) in across {
                 let weight = wx * wy;
                 match self {
-                    Source::Surface(s) => facets.push(s.facet(y * s.size[0] + x, weight)),
+                    Source::Surface(s) => {
+                        let facet = s.facet(y * s.size[0] + x, weight);
+                        least = least.min(facet.alpha);
+                        facets.push(facet);
+                    }
                     Source::Store(s) => {
                         let texel = y * s.width + x;
                         error += weight * f64::from(s.errors[texel]);
+                        least = least.min(s.least[texel]);
                         let own = &s.facets[s.starts[texel]..s.starts[texel + 1]];
                         facets.extend(own.iter().map(|k| k.facet(weight)));
                     }
                 }
             }
         }
-        (facets, error)
+        (facets, error, least)
     }
 }
 
@@ -233,7 +241,7 @@ struct Job<'a> {
 }
 
 /// A row of texels, with the footprints that are kept of them.
-type Row = Vec<(Texel, Vec<Kept>, f32)>;
+type Row = Vec<(Texel, Vec<Kept>, f32, f64)>;
 
 impl Job<'_> {
     fn run(&self, cancel: &Cancel, tell: &(dyn Fn(usize) + Sync)) -> Result<(Level, Store), FilterError> {
@@ -248,23 +256,29 @@ impl Job<'_> {
         let rows: Result<Vec<Row>, FilterError> = (0..height).into_par_iter().map_init(new, one).collect();
         let mut level = Level { size: self.size, texels: Vec::with_capacity(width * height) };
         let mut store = Store { width, starts: vec![0], ..Store::default() };
-        for (texel, kept, error) in rows?.into_iter().flatten() {
+        for (texel, kept, error, least) in rows?.into_iter().flatten() {
             level.texels.push(texel);
             if self.keep {
                 store.facets.extend(kept);
                 store.starts.push(store.facets.len());
                 store.errors.push(error);
+                store.least.push(least);
             }
         }
         Ok((level, store))
     }
 
     #[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]
-    fn texel(&self, fitter: &mut Fitter, x: usize, y: usize) -> Result<(Texel, Vec<Kept>, f32), FilterError> {
-        let (facets, error) = self.source.gather(self.cover[0].of(x), self.cover[1].of(y));
+    fn texel(
+        &self,
+        fitter: &mut Fitter,
+        x: usize,
+        y: usize,
+    ) -> Result<(Texel, Vec<Kept>, f32, f64), FilterError> {
+        let (facets, error, least) = self.source.gather(self.cover[0].of(x), self.cover[1].of(y));
         let none = FilterError::NoMean { level: self.level, x, y };
         let mut footprint = Footprint::new(facets).ok_or(none)?;
-        footprint.merge_error = error;
+        (footprint.merge_error, footprint.least) = (error, least);
         if self.settings.effort == Effort::Fast || self.keep {
             let most = if self.settings.effort == Effort::Exact { 64 * MOST_FACETS } else { MOST_FACETS };
             footprint = footprint.merged(most);
@@ -286,6 +300,6 @@ impl Job<'_> {
             at_limit: fitted.at_limit,
         };
         let kept = if self.keep { footprint.facets.iter().map(Kept::of).collect() } else { Vec::new() };
-        Ok((texel, kept, footprint.merge_error as f32))
+        Ok((texel, kept, footprint.merge_error as f32, least))
     }
 }

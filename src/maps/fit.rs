@@ -175,7 +175,7 @@ impl Cost for Problem<'_> {
     fn hold(&self, mut at: Point) -> Point {
         if self.shape == Shape::Isotropic {
             let a = self.start[0];
-            at[0] = at[0].clamp(libm::log(a), libm::log(a / self.least));
+            at[0] = at[0].min(libm::log(a / self.least)).max(libm::log(a));
         }
         at
     }

@@ -98,11 +98,11 @@ impl Lobe {
         Lobe { normal, alpha_max: large.max(0.0).sqrt(), alpha_min: small.max(0.0).sqrt(), angle }
     }
 
-    /// Both widths held within bounds.
+    /// Both widths held within bounds; the upper one counts where they cross.
     #[must_use]
     pub fn within(mut self, least: f64, most: f64) -> Lobe {
-        self.alpha_max = self.alpha_max.clamp(least, most);
-        self.alpha_min = self.alpha_min.clamp(least, most);
+        self.alpha_max = self.alpha_max.max(least).min(most);
+        self.alpha_min = self.alpha_min.max(least).min(most);
         if self.alpha_max - self.alpha_min <= 0.0 {
             self.angle = 0.0;
         }

@@ -32,9 +32,12 @@ const PRINTING: &[&[&str]] = &[
     &["laws", "lambert", "--json"],
     &["fit", "-t", "fresnel-dielectric", "-d", "1", "--form", "polynomial"],
     &["map", "--normal", "tests/footprints/normal.png", "--json", "-o", "DIR/maps"],
+    &["guide", "axes"],
     &["list", "models"],
     &["list", "models", "--json"],
     &["describe", "ggx"],
+    &["guide"],
+    &["guide", "three"],
 ];
 
 /// Verbs without data: what they have to say goes to stderr.

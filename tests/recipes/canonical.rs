@@ -32,7 +32,7 @@ fn spelling_does_not_matter() {
     assert_eq!(short.hash, long.hash);
     assert_eq!(short.hash.len(), 64);
     let axis = &long.tables[0].bound.spec.grid.axes()[1];
-    assert_eq!(axis.coordinate_formula(), "(roughness * 63 + 0.5) / 64");
+    assert_eq!(axis.coordinate_formula(), "((roughness * 63) + 0.5) / 64");
     assert_eq!(axis, &short.tables[0].bound.spec.grid.axes()[1]);
 }
 
