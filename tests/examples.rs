@@ -7,7 +7,7 @@ use brdfbake::encode::diff_files;
 use std::path::Path;
 use std::process::Command;
 
-const OWN: [&str; 2] = ["command.txt", "recipe.toml"];
+const OWN: [&str; 3] = ["command.txt", "normal.png", "recipe.toml"];
 
 /// Runs a command whose last word is the folder of the example, or a file in it, with another folder in its place.
 fn run(command: &str, name: &str, out: &Path, root: &Path) {

@@ -100,7 +100,7 @@ fn tail(values: &[f64]) -> f64 {
 pub(crate) fn compensated(draw: &Draw) -> (f64, f64) {
     let p = &draw.params;
     let mu = draw.mu;
-    let (alpha, gamma) = ([p.number("alpha").unwrap(); 2], p.number("gamma").unwrap());
+    let (alpha, gamma) = ([p.number("alpha").unwrap(); 2], p.number("gamma").unwrap_or(f64::NAN));
     let single =
         lobe::microfacet(p.choice("base").unwrap(), alpha, gamma, masking(p), (schlick_of(p), vec![]));
     let one = Fresnel::Schlick { f0: 1.0, f90: 1.0 };

@@ -228,7 +228,7 @@ fn smith<'a>(draw: &Draw) -> Lobe<'a> {
     lobe::microfacet(
         base,
         [p.number("alpha_x").unwrap(), p.number("alpha_y").unwrap()],
-        p.number("gamma").unwrap(),
+        p.number("gamma").unwrap_or(f64::NAN),
         masking(p),
         lobe::fresnel(p),
     )
@@ -251,7 +251,7 @@ fn diffuse(draw: &Draw) -> (f64, f64) {
 /// GTR: the masking is a curve of its own rule.
 fn gtr(draw: &Draw) -> (Lobe<'static>, f64) {
     let p = &draw.params;
-    let (alpha, gamma) = (p.number("alpha").unwrap(), p.number("gamma").unwrap());
+    let (alpha, gamma) = (p.number("alpha").unwrap(), p.number("gamma").unwrap_or(f64::NAN));
     let exact = move |mu: f64| lobe::gtr_mu_lambda(alpha, gamma, mu, &quad::SECOND);
     let curve = Curve::new(split(&[-34.0, 34.0], 2.0), 24, &exact);
     let error = curve.error();
