@@ -37,6 +37,18 @@ impl TableInfo {
                 own.into_iter().filter_map(|axis| self.fit(axis, model, &mut replaced)).collect()
             }
         };
+        // what a model measures by two names is swept once
+        let measured = |a: &Axis| {
+            let base = a.quantity.base_id();
+            setting.model.and_then(|m| m.measured(base)).map_or(base, |p| p.id)
+        };
+        let mut seen = Vec::new();
+        axes.retain(|a| {
+            let id = measured(a);
+            let new = !seen.contains(&id);
+            seen.push(id);
+            new
+        });
         let bases: Vec<&str> = axes.iter().map(|a| a.quantity.base_id()).collect();
         let lost = |a: &Axis| a.warp.couples_to().is_some_and(|to| !bases.contains(&to));
         let lost: Vec<bool> = axes.iter().map(lost).collect();

@@ -89,7 +89,11 @@ pub static INFO: TableInfo = TableInfo {
             channels: &[
                 entry("ltc.a", "a of the sheared lobe nearest to the model", Entry::A),
                 entry("ltc.b", "b of the sheared lobe nearest to the model", Entry::B),
-                unit("ltc.reflectance", "int f mu_i dwi", Role::Albedo(Lobe::White, Light::All, Side::Above)),
+                unit(
+                    "ltc.reflectance",
+                    "int f mu_i dwi",
+                    Role::Albedo(Lobe::White, Light::Reflected, Side::Above),
+                ),
             ],
         },
     ],

@@ -25,7 +25,7 @@ const E: ChannelInfo = ChannelInfo {
     id: "sheen.e",
     meaning: "int f(wo, wi) mu_i dwi of the sheen",
     range: [0.0, 1.0],
-    role: Role::Albedo(Lobe::Model, Light::All, Side::Above),
+    role: Role::Albedo(Lobe::Model, Light::Reflected, Side::Above),
 };
 
 /// Registry entry.

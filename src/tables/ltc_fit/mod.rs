@@ -129,6 +129,7 @@ pub fn fit(
     let mut evaluations = 0u32;
     let mut fits: Vec<Fit> = Vec::new();
     let mut last: Option<(Optimum, f64)> = None;
+    let mut best: Option<Fitted> = None;
     for level in LEVELS {
         let target = Target::new(model, view, level)?;
         if target.is_dark() {
@@ -144,15 +145,21 @@ pub fn fit(
         };
         fits.push(fit);
         last = Some((Optimum { evaluations: 0, ..found }, fit.l3));
-        if fits.len() > 2 && done(&Fitted { fit, error: error(&fits), evaluations }) {
-            break;
+        let fitted = Fitted { fit, error: error(&fits), evaluations };
+        if !(fit.l3 + fit.variation + difference(&fit, &fit).entries).is_finite() {
+            return Err(TexelError::NotFinite { channel: 0, value: fit.l3 });
+        }
+        if fits.len() > 2 {
+            if done(&fitted) {
+                return Ok(fitted);
+            }
+            // where the levels end without content, the one whose lobe is known best
+            if best.is_none_or(|b: Fitted| fitted.error.l3 < b.error.l3) {
+                best = Some(fitted);
+            }
         }
     }
-    let fit = fits.last().copied().ok_or(TexelError::NoWidth)?;
-    if !(fit.l3 + fit.variation + difference(&fit, &fit).entries).is_finite() {
-        return Err(TexelError::NotFinite { channel: 0, value: fit.l3 });
-    }
-    Ok(Fitted { fit, error: error(&fits), evaluations })
+    best.map(|b| Fitted { evaluations, ..b }).ok_or(TexelError::NoWidth)
 }
 
 /// The best matrix on the nodes of a level, from that of the level before (with its error) or from the moments.

@@ -16,6 +16,10 @@ use std::sync::{Mutex, PoisonError};
 /// Roundings of a value in closed form.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
+/// How many times its own estimate an angle may be off: where a model is clamped (the cosine of Oren and Nayar) the sums have corners
+/// that their panels do not know.
+const CLAMPED: f64 = 4.0;
+
 /// Most steps of Newton's method from a baked angle.
 const STEPS: usize = 3;
 
@@ -202,7 +206,8 @@ impl Directions {
                 break;
             }
         }
-        Some(Drawn { wi: seen.light(theta, phi), theta, phi, error: [theta_error, phi_error] })
+        let error = [theta_error, phi_error].map(|e| CLAMPED * e);
+        Some(Drawn { wi: seen.light(theta, phi), theta, phi, error })
     }
 }
 

@@ -102,9 +102,9 @@ impl Models {
             Role::Average(lobe, which, side) => light(lobe, which, side, true),
             Role::Complement(lobe, side) => light(lobe, Light::All, side, false),
             Role::AverageComplement(lobe, side) => light(lobe, Light::All, side, true),
-            Role::KeptAlbedo(lobe, _) | Role::Scaling(lobe) | Role::Gain(lobe) => {
-                light(lobe, Light::All, Side::Above, false)
-            }
+            // what a lobe leaves to the one below counts what it reflects
+            Role::Scaling(lobe) => light(lobe, Light::Reflected, Side::Above, false),
+            Role::KeptAlbedo(lobe, _) | Role::Gain(lobe) => light(lobe, Light::All, Side::Above, false),
             Role::CompensationLobe(lobe) => {
                 let mut both: Vec<Base> = light(lobe, Light::All, Side::Above, false);
                 both.extend(light(lobe, Light::All, Side::Above, true));
@@ -232,7 +232,8 @@ fn combine(role: Role, asked: &Asked<'_>, known: &Known) -> Option<Truth> {
         }
         Role::Scaling(lobe) => {
             let sheen = asked.spec.params.number("sheen").ok()?;
-            Some(kept(times(all(lobe)?, -sheen, 1.0), 0.0, f64::INFINITY))
+            let e = light(lobe, Light::Reflected, Side::Above, false)?;
+            Some(kept(times(e, -sheen, 1.0), 0.0, f64::INFINITY))
         }
         Role::Gain(lobe) => {
             let e = all(lobe)?;
