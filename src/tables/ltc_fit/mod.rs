@@ -154,7 +154,8 @@ pub fn fit(
                 return Ok(fitted);
             }
             // where the levels end without content, the one whose lobe is known best
-            if best.is_none_or(|b: Fitted| fitted.error.l3 < b.error.l3) {
+            let of_the_lobe = |f: &Fitted| f.error.l3.max(f.error.variation);
+            if best.is_none_or(|b| of_the_lobe(&fitted) < of_the_lobe(&b)) {
                 best = Some(fitted);
             }
         }

@@ -162,6 +162,7 @@ impl Directions {
         let seen = see(&*model, self.lobes.view(lobe, asked.at));
         let at = |id: &str| asked.spec.axis(id).map(|i| asked.at[i]);
         let (u, v) = (at("u")?, at("v")?);
+        let target = target / CLAMPED;
         let [mut theta, mut phi] = angles(asked, &seen)?;
         // the polar angle: by what its distribution misses; its slope need not be sharp, but then a far step is taken twice
         let slope_at = |theta: f64| {
