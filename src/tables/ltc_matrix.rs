@@ -194,11 +194,7 @@ impl Baker for Matrix {
             if !self.parts.iter().any(|p| mine(*p)) {
                 continue;
             }
-            let fitted = ltc_fit::fit(&*model, view, wanted, |f| {
-                // NaN is not content; entries may be small and agree before the lobe does
-                let content = |v: Value| v.spread <= tolerance && v.error <= tolerance;
-                self.parts.iter().filter(|p| mine(**p)).all(|p| content(channel(*p, f)))
-            })?;
+            let fitted = ltc_fit::fit(&*model, view, wanted, |f| content(f, tolerance))?;
             e.evaluations = e.evaluations.saturating_add(fitted.evaluations);
             for (i, part) in self.parts.iter().enumerate().filter(|(_, p)| mine(**p)) {
                 let of = channel(*part, &fitted);
@@ -274,21 +270,27 @@ struct Value {
     value: f64,
     /// Estimate: of a matrix entry that of the residual of its lobe, which is what the table promises.
     error: f64,
-    /// What the value itself still moves by from level to level: what the fit tries to bring below the tolerance.
-    spread: f64,
+}
+
+/// Is a fit as good as it is asked for, whatever channels are taken from it? Its lobe is, and its entries over `m33`, which agree last.
+/// NaN is not.
+fn content(fitted: &Fitted, tolerance: f64) -> bool {
+    let (m, error) = (&fitted.fit.inverse, &fitted.error);
+    let largest = [m.m11, m.m22, m.m13, m.m31].into_iter().map(f64::abs).fold(0.0, f64::max);
+    let entries = error.entries * (1.0 + largest / m.m33.abs()) / m.m33.abs();
+    [entries, error.l3, error.variation, error.albedo].iter().all(|e| *e <= tolerance)
 }
 
 fn channel(part: Part, fitted: &Fitted) -> Value {
     let (m, fit, error) = (&fitted.fit.inverse, &fitted.fit, &fitted.error);
-    let entry = |value: f64, spread: f64| Value { value, error: error.l3, spread };
-    // over m33, an error of m33 counts too
-    let over_m33 = |v: f64| entry(v / m.m33, error.entries * (1.0 + (v / m.m33).abs()) / m.m33.abs());
-    let plain = |value: f64, error: f64| Value { value, error, spread: error };
+    let entry = |value: f64| Value { value, error: error.l3 };
+    let over_m33 = |v: f64| entry(v / m.m33);
+    let plain = |value: f64, error: f64| Value { value, error };
     match part {
-        Part::Entry(Entry::M11) => entry(m.m11, error.entries),
-        Part::Entry(Entry::M31) => entry(m.m31, error.entries),
-        Part::Entry(Entry::M13) => entry(m.m13, error.entries),
-        Part::Entry(Entry::M33) => entry(m.m33, error.entries),
+        Part::Entry(Entry::M11) => entry(m.m11),
+        Part::Entry(Entry::M31) => entry(m.m31),
+        Part::Entry(Entry::M13) => entry(m.m13),
+        Part::Entry(Entry::M33) => entry(m.m33),
         Part::Entry(Entry::Z11) => over_m33(m.m11),
         Part::Entry(Entry::Z31) => over_m33(m.m31),
         Part::Entry(Entry::Z22 | Entry::A) => over_m33(m.m22),

@@ -16,10 +16,6 @@ use std::sync::{Mutex, PoisonError};
 /// Roundings of a value in closed form.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// How many times its own estimate an angle may be off: where a model is clamped (the cosine of Oren and Nayar) the sums have corners
-/// that their panels do not know.
-const CLAMPED: f64 = 4.0;
-
 /// Most steps of Newton's method from a baked angle.
 const STEPS: usize = 3;
 
@@ -54,7 +50,11 @@ impl Seen<'_> {
 
     /// `int f dphi` from the azimuth of the view to another one; it peaks there and half a turn on.
     fn around(&self, theta: f64, end: f64, target: f64) -> Sum {
-        let halves = if end > PI { vec![0.0, 1.0, 1.0 + (end - PI) / PI] } else { vec![0.0, end / PI] };
+        let last = end / PI;
+        // where a model is clamped (the cosine of Oren and Nayar) it has corners in the cross plane
+        let mut halves = vec![0.0];
+        halves.extend([0.5, 1.0, 1.5].into_iter().filter(|b| *b < last));
+        halves.push(last);
         quad::integrate(&halves, 1, &[target; WIDE], MOST[1], &mut |y| {
             let turn = y.floor().min(1.0);
             // the last part ends where it is told to, not at the end of its half
@@ -162,7 +162,6 @@ impl Directions {
         let seen = see(&*model, self.lobes.view(lobe, asked.at));
         let at = |id: &str| asked.spec.axis(id).map(|i| asked.at[i]);
         let (u, v) = (at("u")?, at("v")?);
-        let target = target / CLAMPED;
         let [mut theta, mut phi] = angles(asked, &seen)?;
         // the polar angle: by what its distribution misses; its slope need not be sharp, but then a far step is taken twice
         let slope_at = |theta: f64| {
@@ -207,8 +206,7 @@ impl Directions {
                 break;
             }
         }
-        let error = [theta_error, phi_error].map(|e| CLAMPED * e);
-        Some(Drawn { wi: seen.light(theta, phi), theta, phi, error })
+        Some(Drawn { wi: seen.light(theta, phi), theta, phi, error: [theta_error, phi_error] })
     }
 }
 
