@@ -43,7 +43,7 @@ def main():
     for folder in sys.argv[2:]:
         for path in pathlib.Path(folder).rglob("manifest.json"):
             for table in json.loads(path.read_text())["tables"]:
-                for axis in table["axes"]:
+                for axis in table.get("axes", []):
                     seen[json.dumps(axis, sort_keys=True)] = axis
     assert seen, "no axis in any manifest"
     for axis in seen.values():
