@@ -45,7 +45,7 @@ fn inline(line: &str) -> String {
     let mut out = String::new();
     let mut rest = line;
     while let Some(at) = rest.find('[') {
-        let link = rest[at..].split_once("](").filter(|(label, _)| !label[1..].contains(['[', '`']));
+        let link = rest[at..].split_once("](").filter(|(label, _)| !label[1..].contains(['[', ']', '`']));
         let Some((label, (target, behind))) = link.and_then(|(l, r)| r.split_once(')').map(|r| (l, r)))
         else {
             out.push_str(&rest[..=at]);
