@@ -135,7 +135,6 @@ pub(super) fn build(
 /// The message for a model that does not exist.
 pub(super) fn unknown_model(name: &str) -> Failure {
     let ids = || models::MODELS.iter().map(|m| m.id);
-    let hint = crate::math::nearest::nearest(name, ids())
-        .map_or_else(String::new, |n| format!("; did you mean `{n}`?"));
+    let hint = crate::math::nearest::hint(name, ids());
     Failure::input(format!("no model `{name}`; there is {}{hint}", ids().collect::<Vec<_>>().join(", ")))
 }

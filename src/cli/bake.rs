@@ -117,8 +117,7 @@ pub(super) fn plan(name: &str) -> Result<Plan, Failure> {
             return recipe::parse(preset.source, &format!("presets/{name}.toml")).map_err(Failure::input);
         }
         let ids: Vec<&str> = recipe::PRESETS.iter().map(|p| p.id).collect();
-        let hint = crate::math::nearest::nearest(name, ids.iter().copied())
-            .map_or_else(String::new, |n| format!("; did you mean `{n}`?"));
+        let hint = crate::math::nearest::hint(name, ids.iter().copied());
         return Err(Failure::input(format!(
             "no preset `{name}`; there is {}{hint} A recipe file is given by its path, such as ./{name}.toml",
             ids.join(", ")

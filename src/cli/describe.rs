@@ -49,8 +49,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
                 .chain(formats);
             models.chain(tables).chain(rest)
         };
-        let hint = crate::math::nearest::nearest(id, ids())
-            .map_or_else(String::new, |n| format!("; did you mean `{n}`?"));
+        let hint = crate::math::nearest::hint(id, ids());
         return Err(Failure::input(format!(
             "nothing is called `{id}`{hint}; `brdfbake list models` and `list functions` list what there is"
         )));

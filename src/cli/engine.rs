@@ -9,8 +9,7 @@ use crate::recipe::{self, ENGINES, Engine};
 pub(super) fn plan(id: &str) -> Result<(&'static Engine, Plan), Failure> {
     let Some(engine) = recipe::engine(id) else {
         let ids: Vec<&str> = ENGINES.iter().map(|e| e.id).collect();
-        let hint = crate::math::nearest::nearest(id, ids.iter().copied())
-            .map_or_else(String::new, |n| format!("; did you mean `{n}`?"));
+        let hint = crate::math::nearest::hint(id, ids.iter().copied());
         return Err(Failure::input(format!("no engine `{id}`; there is {}{hint}", ids.join(", "))));
     };
     Ok((engine, engine.plan().map_err(Failure::input)?))

@@ -2,7 +2,7 @@
 
 use super::{Exit, Failure, output};
 use crate::guide::{TOPICS, engine_page, plain, topic};
-use crate::math::nearest::nearest;
+use crate::math::nearest::hint;
 use crate::recipe::{self, ENGINES};
 
 /// Arguments of `guide`.
@@ -49,6 +49,6 @@ fn page(id: &str) -> Result<String, Failure> {
         return Ok(plain(&engine_page(engine, 1).map_err(|e| Failure::new(Exit::Unsupported, e))?));
     }
     let ids = TOPICS.iter().map(|t| t.id).chain(ENGINES.iter().map(|e| e.id));
-    let hint = nearest(id, ids).map_or_else(String::new, |n| format!("; did you mean `{n}`?"));
+    let hint = hint(id, ids);
     Err(Failure::usage(format!("the guide has no page `{id}`{hint} (`brdfbake guide` lists them)")))
 }

@@ -8,7 +8,7 @@ use crate::encode::mips::{CONTAINERS, storages};
 use crate::functions::conversion::{By, CONVERSIONS};
 use crate::maps::{self, Centre, Convention, Effort, Objective, RULES, Shape, rules};
 use crate::math::figures::short;
-use crate::math::nearest::nearest;
+use crate::math::nearest::hint;
 use crate::picture::{Space, Wrap};
 use crate::pipeline::map::{
     FromLobe, Input, MapError, MapOutcome, MapRequest, Output, RoughnessInput, run as filter,
@@ -173,8 +173,7 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
 fn request(args: &Args) -> Result<MapRequest, Failure> {
     let ids: Vec<&str> = RULES.iter().map(|r| r.id).collect();
     let rule = rules::rule(&args.rule).ok_or_else(|| {
-        let hint = nearest(&args.rule, ids.iter().copied());
-        let hint = hint.map_or_else(String::new, |n| format!("; did you mean `{n}`?"));
+        let hint = hint(&args.rule, ids.iter().copied());
         Failure::usage(format!("--rule {}: no such rule; there is {}{hint}", args.rule, ids.join(", ")))
     })?;
     if args.anisotropic && !rule.anisotropic {

@@ -29,6 +29,21 @@ pub struct Call<'a> {
     pub double: bool,
 }
 
+impl Call<'_> {
+    /// `sqrt(x)`: as GLSL, HLSL, WGSL, Python and formulas have it; behind something where the names stand in a `namespace`.
+    #[must_use]
+    pub fn common(&self, namespace: &str) -> String {
+        let name = match self.function {
+            Function::Sqrt => "sqrt",
+            Function::Pow => "pow",
+            Function::Cos => "cos",
+            Function::Min => "min",
+            Function::Max => "max",
+        };
+        format!("{namespace}{name}({})", self.arguments.join(", "))
+    }
+}
+
 /// How numbers and calls are written. Infix operators are the same everywhere.
 pub trait Notation: Debug {
     /// A number.
@@ -47,14 +62,7 @@ impl Notation for PlainText {
     }
 
     fn call(&self, call: &Call<'_>) -> String {
-        let name = match call.function {
-            Function::Sqrt => "sqrt",
-            Function::Pow => "pow",
-            Function::Cos => "cos",
-            Function::Min => "min",
-            Function::Max => "max",
-        };
-        format!("{name}({})", call.arguments.join(", "))
+        call.common("")
     }
 }
 

@@ -9,6 +9,7 @@ pub mod least_squares;
 pub mod nearest;
 pub mod rational;
 pub mod root;
+pub mod shown;
 pub mod simplex;
 pub mod special;
 pub mod square;

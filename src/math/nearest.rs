@@ -11,6 +11,11 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|(_, c)| c)
 }
 
+/// The end of a message about an unknown word: `; did you mean ...?`, or nothing where no candidate is near.
+pub fn hint<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
+    nearest(word, candidates).map_or_else(String::new, |n| format!("; did you mean `{n}`?"))
+}
+
 /// Up to `most` candidates that are near enough to `word` to be slips, nearest first.
 pub fn few<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>, most: usize) -> Vec<&'a str> {
     let limit = 1 + word.chars().count() / 3;

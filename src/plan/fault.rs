@@ -3,6 +3,7 @@
 use crate::grid::{AxisError, GridError};
 use crate::math::figures::exact as number;
 use crate::math::nearest::nearest;
+use crate::math::shown::show;
 use crate::models::ParamError;
 use crate::tables::BindError;
 
@@ -340,17 +341,6 @@ fn did_you_mean(word: impl AsRef<str>) -> String {
 
 fn hint(suggestion: Option<&str>, allowed: &str) -> String {
     suggestion.map_or_else(|| format!("there is {allowed}"), did_you_mean)
-}
-
-/// Given text in a message: control characters escaped, cut after 64 characters.
-pub(crate) fn show(text: &str) -> String {
-    const LONGEST: usize = 64;
-    let escaped = |c: char| if matches!(c, '"' | '\'' | '\\') { vec![c] } else { c.escape_debug().collect() };
-    let mut out: String = text.chars().take(LONGEST).flat_map(escaped).collect();
-    if text.chars().nth(LONGEST).is_some() {
-        out.push('…');
-    }
-    out
 }
 
 /// A word that is not among those offered.

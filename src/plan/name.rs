@@ -1,11 +1,12 @@
 //! Names that become file names: the same on every system.
 
-use super::fault::{Fault, show};
+use super::fault::Fault;
 use super::faults::Faults;
 use super::output::{self, Output};
 use super::place::Path;
 use super::request::{Draft, TableRequest};
 use crate::encode::{ENCODERS, Encoder};
+use crate::math::shown::show;
 use std::collections::HashSet;
 
 /// Most characters of a name.

@@ -1,12 +1,13 @@
 //! The outputs of a table: container, storage and options, and whether they can hold it.
 
 use super::TOLERANCE;
-use super::fault::{Fault, show, unknown_word};
+use super::fault::{Fault, unknown_word};
 use super::faults::Faults;
 use super::place::Path;
 use super::request::{Draft, TableRequest};
 use crate::encode::{self, ENCODERS, EncodeError, Encoder, FileOption, Shape, Storage};
 use crate::grid::Grid;
+use crate::math::shown::show;
 use crate::tables::{Bound, ChannelInfo};
 use serde::{Serialize, Serializer};
 

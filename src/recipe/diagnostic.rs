@@ -1,8 +1,9 @@
 //! Faults with their places in the file, and how they are shown: line, column, the line itself with a caret, a remedy.
 
 use super::span::Spans;
+use crate::math::shown::show;
 use crate::plan::Place;
-use crate::plan::fault::{Fault, show};
+use crate::plan::fault::Fault;
 use crate::plan::faults::Faults;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use serde::Serialize;

@@ -1,6 +1,7 @@
 //! One section of a recipe file: its known keys, read by type. A value of the wrong type is a fault and reads as none.
 
-use crate::plan::fault::{Fault, show, slip, unknown_word};
+use crate::math::shown::show;
+use crate::plan::fault::{Fault, slip, unknown_word};
 use crate::plan::faults::Faults;
 use crate::plan::{LONGEST_REASON, Path};
 use toml::Spanned;

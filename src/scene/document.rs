@@ -4,11 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
-use super::error::{Fault, show};
+use super::error::Fault;
 use super::json::Node;
 use super::material::{self, Animated, Counts, Material};
 use super::uri::{Checked, check_uri};
 use super::{ExternalFile, Limits, Scene, Warning};
+use crate::math::shown::show;
 
 /// The scene in a parsed document. The file's name is left empty.
 pub(super) fn scene(tree: &Value, limits: &Limits) -> Result<Scene, Fault> {

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::uri::UriError;
+use crate::math::shown::show;
 
 /// A scene file that was refused: which file, and the fault.
 #[derive(Debug)]
@@ -199,16 +200,4 @@ pub enum Fault {
         #[source]
         source: UriError,
     },
-}
-
-/// Text of a file, made safe for a terminal: control characters escaped, cut after 64 characters.
-pub(super) fn show(text: &str) -> String {
-    const LONGEST: usize = 64;
-    // Quotes and backslashes are harmless and read better as they are.
-    let escaped = |c: char| if matches!(c, '"' | '\'' | '\\') { vec![c] } else { c.escape_debug().collect() };
-    let mut out: String = text.chars().take(LONGEST).flat_map(escaped).collect();
-    if text.chars().nth(LONGEST).is_some() {
-        out.push('…');
-    }
-    out
 }

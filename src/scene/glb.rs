@@ -12,7 +12,8 @@ use std::borrow::Cow;
 use gltf::binary::{ChunkType, Error, Glb};
 
 use super::Warning;
-use super::error::{Fault, show};
+use super::error::Fault;
+use crate::math::shown::show;
 
 /// First four bytes of a GLB.
 pub(super) const MAGIC: &[u8] = b"glTF";

@@ -2,7 +2,8 @@
 
 use serde_json::Value;
 
-use super::error::{Fault, show};
+use super::error::Fault;
+use crate::math::shown::show;
 
 /// The step from a value to one of its parts.
 #[derive(Debug, Clone, Copy)]

@@ -26,6 +26,7 @@ mod needs;
 mod parse;
 mod uri;
 
+use crate::math::shown::show;
 use std::fmt;
 use std::fs::File;
 use std::io::Read;
@@ -102,10 +103,10 @@ impl fmt::Display for Warning {
                 )
             }
             Self::NotDeclared { extension } => {
-                write!(f, "{} is on a material but not in extensionsUsed", error::show(extension))
+                write!(f, "{} is on a material but not in extensionsUsed", show(extension))
             }
             Self::RequiredNotUsed { extension } => {
-                write!(f, "{} is in extensionsRequired but not in extensionsUsed", error::show(extension))
+                write!(f, "{} is in extensionsRequired but not in extensionsUsed", show(extension))
             }
         }
     }

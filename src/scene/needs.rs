@@ -6,9 +6,9 @@ use std::fmt;
 use serde::Serialize;
 
 use super::Scene;
-use super::error::show;
 use super::extension::{self, Asks, GGX};
 use super::material::{Interval, Material, MaterialExtension, State};
+use crate::math::shown::show;
 
 /// A material as reports name it.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize)]

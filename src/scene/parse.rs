@@ -10,8 +10,9 @@ use std::fmt;
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
 
-use super::error::{Fault, show};
+use super::error::Fault;
 use super::json::{self, Step};
+use crate::math::shown::show;
 
 /// The sections of a document that this room reads. Any other is stepped over without being kept.
 const KEPT: &[&str] = &[

@@ -1,22 +1,10 @@
 //! GLSL 3.30, ES 3.00 and later, without a `#version` line: to be included.
 
-use super::{Call, Function, Parts, Syntax};
+use super::{Call, Parts, Syntax};
 
 /// The language. See the module.
 #[derive(Debug, Clone, Copy)]
 pub struct Glsl;
-
-/// A call of a function that all shader languages name alike.
-pub(super) fn call(call: &Call<'_>) -> String {
-    let name = match call.function {
-        Function::Sqrt => "sqrt",
-        Function::Pow => "pow",
-        Function::Cos => "cos",
-        Function::Min => "min",
-        Function::Max => "max",
-    };
-    format!("{name}({})", call.arguments.join(", "))
-}
 
 impl Syntax for Glsl {
     fn id(&self) -> &'static str {
@@ -31,8 +19,8 @@ impl Syntax for Glsl {
         4
     }
 
-    fn call(&self, c: &Call<'_>) -> String {
-        call(c)
+    fn call(&self, call: &Call<'_>) -> String {
+        call.common("")
     }
 
     fn int(&self, name: &str, value: &str) -> String {

@@ -1,6 +1,6 @@
 //! HLSL, shader model 4 and later.
 
-use super::{Call, Glsl, Parts, Syntax, glsl};
+use super::{Call, Glsl, Parts, Syntax};
 
 /// The language. See the module.
 #[derive(Debug, Clone, Copy)]
@@ -20,7 +20,7 @@ impl Syntax for Hlsl {
     }
 
     fn call(&self, call: &Call<'_>) -> String {
-        glsl::call(call)
+        call.common("")
     }
 
     fn int(&self, name: &str, value: &str) -> String {

@@ -1,6 +1,6 @@
 //! JavaScript: a module that exports a typed array and a function. Numbers are 64-bit floats, whatever the array holds.
 
-use super::{Call, Function, Parts, Syntax};
+use super::{Call, Parts, Syntax};
 
 /// The language. See the module.
 #[derive(Debug, Clone, Copy)]
@@ -20,14 +20,7 @@ impl Syntax for Js {
     }
 
     fn call(&self, call: &Call<'_>) -> String {
-        let name = match call.function {
-            Function::Sqrt => "sqrt",
-            Function::Pow => "pow",
-            Function::Cos => "cos",
-            Function::Min => "min",
-            Function::Max => "max",
-        };
-        format!("Math.{name}({})", call.arguments.join(", "))
+        call.common("Math.")
     }
 
     fn int(&self, name: &str, value: &str) -> String {

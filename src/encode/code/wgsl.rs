@@ -1,6 +1,6 @@
 //! WGSL: a module constant and a function.
 
-use super::{Call, Parts, Syntax, glsl, reader};
+use super::{Call, Parts, Syntax, reader};
 
 /// The language. See the module.
 #[derive(Debug, Clone, Copy)]
@@ -20,7 +20,7 @@ impl Syntax for Wgsl {
     }
 
     fn call(&self, call: &Call<'_>) -> String {
-        glsl::call(call)
+        call.common("")
     }
 
     fn int(&self, name: &str, value: &str) -> String {
