@@ -3,7 +3,6 @@
 use crate::grid::Axis;
 use crate::grid::provenance::{Encoding, Reconstruction};
 use crate::plan::PlannedTable;
-use crate::tables::Setting;
 
 /// Times the tolerance, or the rounding if that is more, beyond which a reader's error is far above.
 const FAR: f64 = 32.0;
@@ -16,8 +15,7 @@ pub(super) fn advice(planned: &PlannedTable, encoding: &Encoding, read: &Reconst
         return Vec::new();
     }
     let spec = &planned.bound.spec;
-    let setting = Setting { layout: &spec.layout, model: spec.model.as_ref().map(|(info, _)| *info) };
-    let own = spec.kind.default_axes(setting);
+    let own = spec.kind.default_axes(spec.setting());
     let mut all = Vec::new();
     if !same_maps(&own, spec.grid.axes()) && swept_by(&own, spec.grid.axes()) {
         let axes: Vec<String> = own

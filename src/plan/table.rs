@@ -10,7 +10,7 @@ use super::sizing::PROVISIONAL;
 use super::{LONGEST_REASON, TOLERANCE, bind, canonical, name, probe, sizing};
 use crate::grid::provenance::{SizeRecord, Waiver};
 use crate::tables::spec::Request;
-use crate::tables::{Bound, Setting, Spec, TableInfo};
+use crate::tables::{Bound, Spec, TableInfo};
 use crate::verify;
 use serde_json::{Map, Value as Json};
 
@@ -138,8 +138,7 @@ fn fill(asked: TableRequest, bound: Bound, tolerance: Option<f64>, waivers: Vec<
     let outputs = output::listed(&asked);
     let finest = outputs.iter().map(|o| o.storage.default_tolerance()).fold(f64::INFINITY, f64::min);
     let spec = &bound.spec;
-    let setting = Setting { layout: &spec.layout, model: spec.model.as_ref().map(|m| m.0) };
-    let least = (spec.kind.least_tolerance)(&setting);
+    let least = (spec.kind.least_tolerance)(&spec.setting());
     let tolerance = asked.tolerance.or(tolerance).unwrap_or(finest.max(least));
     let reconstruction = asked.reconstruction.unwrap_or(spec.kind.blended);
     let asked = TableRequest {

@@ -7,6 +7,7 @@ use super::average_albedo::average;
 use super::default_axes::{coupled, view_and_roughness, white_albedo};
 use super::integral::{Functional, integrate};
 use super::memo::Memo;
+use super::refine::{Refinement, largest, refined};
 use super::role::{Lobe, Side};
 use super::sweep::Sweep;
 use super::{
@@ -153,20 +154,8 @@ impl Compensation {
 
 impl Baker for Compensation {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
-        let mut inner = tolerance;
-        let mut all = self.at(at, inner)?;
-        // quotients magnify the error of E: ask for what they need
-        for _ in 0..3 {
-            let largest = all.error[..self.parts.len()].iter().copied().fold(0.0, f64::max);
-            if largest <= tolerance || largest.is_nan() {
-                break;
-            }
-            inner = (0.3 * inner * tolerance / largest).max(1e-14);
-            let before = all.evaluations;
-            all = self.at(at, inner)?;
-            all.evaluations = all.evaluations.saturating_add(before);
-        }
-        Ok(all)
+        let how = Refinement { tolerance, first: tolerance, share: 0.3, least: 1e-14 };
+        refined(how, |inner| self.at(at, inner), |e| largest(e, self.parts.len()))
     }
 
     fn rule(&self) -> String {

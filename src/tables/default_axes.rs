@@ -50,11 +50,11 @@ impl TableInfo {
             new
         });
         let bases: Vec<&str> = axes.iter().map(|a| a.quantity.base_id()).collect();
-        let lost = |a: &Axis| a.warp.couples_to().is_some_and(|to| !bases.contains(&to));
-        let lost: Vec<bool> = axes.iter().map(lost).collect();
-        for (axis, _) in axes.iter_mut().zip(lost).filter(|(_, lost)| *lost) {
-            // the best that needs no other axis: a grazing view changes fastest
-            axis.warp = Warp::Power(0.5);
+        for axis in &mut axes {
+            if axis.warp.couples_to().is_some_and(|to| !bases.contains(&to)) {
+                // the best that needs no other axis: a grazing view changes fastest
+                axis.warp = Warp::Power(0.5);
+            }
         }
         axes
     }
@@ -97,10 +97,11 @@ fn within(mut axis: Axis, param: &'static Param) -> Axis {
     let Some(range) = param.range() else { return axis };
     let mut allowed = axis.quantity.interval_from_base(range);
     if let Some((sweep, quantity)) = param.sweep.and_then(|s| Some((s, Quantity::find(s.quantity)?))) {
-        let base =
-            sweep.domain.map(|v| if axis.quantity.id == sweep.quantity { v } else { quantity.to_base(v) });
-        let own =
-            if axis.quantity.id == sweep.quantity { base } else { axis.quantity.interval_from_base(base) };
+        let own = if axis.quantity.id == sweep.quantity {
+            sweep.domain
+        } else {
+            axis.quantity.interval_from_base(sweep.domain.map(|v| quantity.to_base(v)))
+        };
         allowed = [allowed[0].max(own[0]), allowed[1].min(own[1])];
     }
     let inside = |[lo, hi]: [f64; 2]| [lo.max(allowed[0]), hi.min(allowed[1])];

@@ -5,6 +5,7 @@
 
 use super::default_axes::{coupled, split_sum, view_and_roughness};
 use super::integral::{Functional, integrate};
+use super::refine::{Refinement, refined};
 use super::role::{Lobe, Weight};
 use super::sweep::Sweep;
 use super::{
@@ -128,13 +129,10 @@ impl Baker for Schlick {
         let (model, view, curve) = (self.sweep.model(at)?, self.sweep.view(at), self.curve(at));
         let mut all = Estimate { value: [0.0; MAX_CHANNELS], error: [0.0; MAX_CHANNELS], evaluations: 0 };
         let weighed = self.parts.iter().any(|p| *p != Part::Visible);
-        let both = [curve, Functional::One];
-        let mut part = if weighed { integrate(&*model, view, &both, 0.25 * tolerance)? } else { all };
-        if self.parts.contains(&Part::Mean) && mean(&part).1 > tolerance && part.value[1] > 0.0 {
-            // the quotient magnifies both errors: each to its share
-            let again = integrate(&*model, view, &both, 0.45 * tolerance * part.value[1])?;
-            part = Estimate { evaluations: part.evaluations.saturating_add(again.evaluations), ..again };
-        }
+        let how = Refinement { tolerance, first: 0.25 * tolerance, share: 0.3, least: 1e-14 };
+        let both = |inner| integrate(&*model, view, &[curve, Functional::One], inner);
+        let error = |e: &Estimate| if self.parts.contains(&Part::Mean) { mean(e).1 } else { 0.0 };
+        let part = if weighed { refined(how, both, error)? } else { all };
         let visible =
             if self.parts.contains(&Part::Visible) { visible(&*model, view, curve, tolerance)? } else { all };
         all.evaluations = part.evaluations.saturating_add(visible.evaluations);

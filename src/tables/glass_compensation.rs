@@ -11,6 +11,7 @@
 
 use super::average_albedo::{Range, average_of};
 use super::memo::Memo;
+use super::refine::{Refinement, largest, refined};
 use super::role::{Lobe, Side};
 use super::sides::{crossing, reflected};
 use super::sweep::Sweep;
@@ -109,9 +110,6 @@ enum Part {
     Average,
     Share,
 }
-
-/// How often means are asked for again, with more digits.
-const REFINEMENTS: usize = 3;
 
 struct Glass {
     sweep: Sweep,
@@ -214,20 +212,10 @@ impl Glass {
 
 impl Baker for Glass {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
-        let mut inner = tolerance;
-        let mut all = self.at(at, tolerance, inner)?;
-        // a share is a quotient of means: they need more digits where little is missing
-        for _ in 0..REFINEMENTS {
-            let largest = all.error[..self.parts.len()].iter().copied().fold(0.0, f64::max);
-            if largest <= tolerance || !self.wants(Part::Share) || !largest.is_finite() {
-                break;
-            }
-            inner = (0.5 * inner * tolerance / largest).max(1e-9);
-            let before = all.evaluations;
-            all = self.at(at, tolerance, inner)?;
-            all.evaluations = all.evaluations.saturating_add(before);
-        }
-        Ok(all)
+        let how = Refinement { tolerance, first: tolerance, share: 0.5, least: 1e-9 };
+        // a share is a quotient of means: they need more digits where little is missing; other channels magnify nothing
+        let error = |e: &Estimate| if self.wants(Part::Share) { largest(e, self.parts.len()) } else { 0.0 };
+        refined(how, |inner| self.at(at, tolerance, inner), error)
     }
 
     fn rule(&self) -> String {

@@ -34,6 +34,7 @@ pub mod phase_function;
 pub mod phase_sampling;
 pub mod preintegrated_skin;
 pub mod profile;
+mod refine;
 pub mod role;
 pub mod selection;
 pub mod sheen_ltc;

@@ -233,6 +233,12 @@ impl Request {
 }
 
 impl Spec {
+    /// What default axes and tolerances are chosen for.
+    #[must_use]
+    pub fn setting(&self) -> Setting<'_> {
+        Setting { layout: &self.layout, model: self.model.as_ref().map(|(info, _)| *info) }
+    }
+
     /// Ids of the parameters that an axis sets: those it sweeps, and those that follow a swept one.
     #[must_use]
     pub fn swept(&self) -> Vec<&'static str> {
