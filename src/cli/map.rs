@@ -321,22 +321,10 @@ fn summary(outcome: &MapOutcome) -> String {
         out.push_str(&line);
         out.push('\n');
     }
-    for rule in
-        record.levels.iter().filter_map(|l| l.measured.as_ref()).flat_map(|m| &m.rules).map(|r| r.rule).fold(
-            Vec::new(),
-            |mut seen: Vec<&str>, id| {
-                if !seen.contains(&id) {
-                    seen.push(id);
-                }
-                seen
-            },
-        )
-    {
-        let means = record.levels.iter().filter_map(|l| l.measured.as_ref());
-        let means: Vec<String> = means
-            .filter_map(|m| m.rules.iter().find(|r| r.rule == rule))
-            .map(|r| format!("{:.4}", r.mean))
-            .collect();
+    let measured: Vec<_> = record.levels.iter().filter_map(|l| l.measured.as_ref()).collect();
+    // every level has the same rules
+    for (i, rule) in measured.iter().take(1).flat_map(|m| &m.rules).map(|r| r.rule).enumerate() {
+        let means: Vec<String> = measured.iter().map(|m| format!("{:.4}", m.rules[i].mean)).collect();
         out.push_str(&format!("rule {rule:<10} mean D of levels 1..: {}\n", means.join(" ")));
     }
     for place in record.worst.iter().take(5) {

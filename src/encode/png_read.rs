@@ -5,6 +5,7 @@ use super::stoppable::Stoppable;
 use super::texels;
 use crate::cancel::Cancel;
 use crate::grid::provenance::ATTRIBUTE;
+use crate::picture::Samples;
 use image::codecs::png::PngDecoder;
 use image::{ImageDecoder, Limits};
 use std::io::Cursor;
@@ -49,8 +50,7 @@ fn pixels(bytes: &[u8], cancel: &Cancel) -> Result<(usize, usize, Vec<Plane>), R
         PngDecoder::with_limits(Stoppable::new(Cursor::new(bytes), cancel), limits).map_err(library)?;
     let (w, h) = decoder.dimensions();
     let (width, height) = (w as usize, h as usize);
-    let colour = decoder.color_type();
-    let n = usize::from(colour.channel_count());
+    let n = usize::from(decoder.color_type().channel_count());
     let samples = width.checked_mul(height).and_then(|a| a.checked_mul(n)).unwrap_or(usize::MAX);
     if samples > MAX_SAMPLES {
         return Err(ReadError::Samples { format: FORMAT, width, height });
@@ -60,23 +60,15 @@ fn pixels(bytes: &[u8], cancel: &Cancel) -> Result<(usize, usize, Vec<Plane>), R
             format!("{} bytes cannot hold {width} x {height} pixels: the file is cut short", bytes.len());
         return Err(ReadError::Fault { format: FORMAT, fault });
     }
-    let size = usize::from(colour.bytes_per_pixel()) / n;
-    let mut data = vec![0; samples * size];
-    decoder.read_image(&mut data).map_err(library)?;
-    let sample = if size == 1 { Sample::Unorm8 } else { Sample::Unorm16 };
-    let names: &[&str] = match n {
-        1 => &["Y"],
-        2 => &["Y", "A"],
-        3 => &["R", "G", "B"],
-        _ => &["R", "G", "B", "A"],
-    };
+    let samples = Samples::read(decoder, width * height).map_err(library)?;
+    let sample = if samples.are_wide() { Sample::Unorm16 } else { Sample::Unorm8 };
     let plane = |(c, name): (usize, &&str)| Plane {
         name: (*name).to_owned(),
         sample,
         range: [0.0, 1.0],
-        values: data.chunks_exact(size).skip(c).step_by(n).map(code).collect(),
+        values: samples.codes(c).map(f64::from).collect(),
     };
-    Ok((width, height, names.iter().enumerate().map(plane).collect()))
+    Ok((width, height, samples.names().iter().enumerate().map(plane).collect()))
 }
 
 /// Bits of a pixel in the file, from the first chunk, which the decoder has checked.
@@ -89,13 +81,6 @@ fn stored_bits(bytes: &[u8]) -> usize {
         _ => 1,
     };
     byte(24) * samples
-}
-
-fn code(sample: &[u8]) -> f64 {
-    match sample {
-        [a, b] => f64::from(u16::from_ne_bytes([*a, *b])),
-        _ => sample.first().map_or(0.0, |&a| f64::from(a)),
-    }
 }
 
 /// The text of the `brdfbake` chunk (iTXt, tEXt or zTXt), wherever it stands. A file that is damaged behind its pixels

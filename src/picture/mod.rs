@@ -9,6 +9,7 @@ mod read;
 mod resample;
 
 pub use pyramid::{Coverage, count_levels, halved, shrink};
+pub(crate) use read::Samples;
 pub use read::{MAGIC, read_bytes};
 pub use resample::Wrap;
 
@@ -92,12 +93,6 @@ impl Picture {
             wanted: name.to_owned(),
             got: self.planes.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", "),
         })
-    }
-
-    /// Column and row of a texel.
-    #[must_use]
-    pub const fn place(&self, texel: usize) -> [usize; 2] {
-        [texel % self.width, texel / self.width]
     }
 }
 

@@ -44,28 +44,54 @@ fn planes(mut decoder: impl ImageDecoder, format: &'static str) -> Result<Pictur
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_ALLOC);
     decoder.set_limits(limits).map_err(library)?;
-    // greys of fewer bits and palettes are unfolded to 8
-    let colour = decoder.color_type();
-    let n = usize::from(colour.channel_count());
-    let size = usize::from(colour.bytes_per_pixel()) / n;
-    let mut data = vec![0; pixels * n * size];
-    decoder.read_image(&mut data).map_err(library)?;
-    let names: &[&str] = match n {
-        1 => &["Y"],
-        2 => &["Y", "A"],
-        3 => &["R", "G", "B"],
-        _ => &["R", "G", "B", "A"],
-    };
+    let samples = Samples::read(decoder, pixels).map_err(library)?;
+    let one = if samples.are_wide() { 65535.0 } else { 255.0 };
     let plane = |(c, name): (usize, &&str)| Plane {
         name: (*name).to_owned(),
-        values: data.chunks_exact(size).skip(c).step_by(n).map(code).collect(),
+        values: samples.codes(c).map(|code| f32::from(code) / one).collect(),
     };
-    Ok(Picture { width, height, planes: names.iter().enumerate().map(plane).collect() })
+    Ok(Picture { width, height, planes: samples.names().iter().enumerate().map(plane).collect() })
 }
 
-fn code(sample: &[u8]) -> f32 {
-    match sample {
-        [a, b] => f32::from(u16::from_ne_bytes([*a, *b])) / 65535.0,
-        _ => sample.first().map_or(0.0, |&a| f32::from(a) / 255.0),
+/// A decoded image: codes of 8 or 16 bits, all channels of a pixel together. Greys of fewer bits and palettes are unfolded to 8.
+pub(crate) struct Samples {
+    channels: usize,
+    /// Bytes of a sample.
+    size: usize,
+    data: Vec<u8>,
+}
+
+impl Samples {
+    /// All of an image of so many pixels.
+    pub(crate) fn read(decoder: impl ImageDecoder, pixels: usize) -> image::ImageResult<Samples> {
+        let colour = decoder.color_type();
+        let channels = usize::from(colour.channel_count());
+        let size = usize::from(colour.bytes_per_pixel()) / channels;
+        let mut data = vec![0; pixels * channels * size];
+        decoder.read_image(&mut data)?;
+        Ok(Samples { channels, size, data })
+    }
+
+    /// Names of the channels.
+    pub(crate) const fn names(&self) -> &'static [&'static str] {
+        match self.channels {
+            1 => &["Y"],
+            2 => &["Y", "A"],
+            3 => &["R", "G", "B"],
+            _ => &["R", "G", "B", "A"],
+        }
+    }
+
+    /// Are the codes of 16 bits?
+    pub(crate) const fn are_wide(&self) -> bool {
+        self.size > 1
+    }
+
+    /// The codes of a channel, rows from the top.
+    pub(crate) fn codes(&self, channel: usize) -> impl Iterator<Item = u16> + '_ {
+        self.data.chunks_exact(self.size).skip(channel).step_by(self.channels).map(|sample| match sample {
+            [a, b] => u16::from_ne_bytes([*a, *b]),
+            _ => sample.first().map_or(0, |&a| u16::from(a)),
+        })
     }
 }

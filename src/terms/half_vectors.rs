@@ -4,6 +4,7 @@
 //! and a distribution in closed form, so that D, half the integral of the absolute difference of two, is a sum over the points where the
 //! densities cross: no quadrature. An anisotropic one is a bundle of such slices over the azimuth.
 
+use super::blinn_phong::equivalent_alpha;
 use crate::math::simplex;
 use std::f64::consts::FRAC_PI_2;
 
@@ -117,10 +118,10 @@ pub fn distance(a: &Lobe, b: &Lobe) -> f64 {
         return apart(&a.slice(0.5, ea), &b.slice(0.5, eb));
     }
     let mut sum = 0.0;
+    // equal masses of the wider axis ratio lie between the nodes: tan of the azimuth is stretched by the ratio of widths
+    let stretch = stretch(a).max(1e-9);
     for i in 0..AZIMUTHS {
-        // equal masses of the wider axis ratio lie between the nodes: tan of the azimuth is stretched by the ratio of widths
         let u = (i as f64 + 0.5) / AZIMUTHS as f64;
-        let stretch = stretch(a).max(1e-9);
         let tangent = libm::tan(FRAC_PI_2 * u);
         let scaled = tangent * stretch;
         let c = 1.0 / (1.0 + scaled * scaled);
@@ -140,7 +141,8 @@ fn stretch(lobe: &Lobe) -> f64 {
 
 /// Half the integral of the absolute difference of two slices.
 fn apart(a: &Slice, b: &Slice) -> f64 {
-    let excess = |t: f64| libm::log(a.share / b.share) + a.shape.log_density(t) - b.shape.log_density(t);
+    let shares = libm::log(a.share / b.share);
+    let excess = |t: f64| shares + a.shape.log_density(t) - b.shape.log_density(t);
     let lowest = a.shape.scale().min(b.shape.scale()) * 1e-8;
     let highest = a.shape.scale().max(b.shape.scale()) * 1e8;
     let ratio = libm::log(highest / lowest) / STEPS as f64;
@@ -175,20 +177,6 @@ fn bisect(f: &impl Fn(f64) -> f64, mut lo: f64, mut hi: f64) -> f64 {
     0.5 * (lo + hi)
 }
 
-/// α of GGX with the peak of an exponent: √(2/(n + 2)).
-///
-/// Source: [Walter2007](crate::cite::WALTER_2007) section 5 (number recalled); the peaks (n + 2)/(2π) and 1/(π α²) are equal.
-#[must_use]
-pub fn alpha_of_power(n: f64) -> f64 {
-    (2.0 / (n + 2.0)).sqrt()
-}
-
-/// The exponent of a width: 2/α² − 2. Domain: α in (0, 1]. Range: ≥ 0.
-#[must_use]
-pub fn power_of_alpha(alpha: f64) -> f64 {
-    2.0 / (alpha * alpha) - 2.0
-}
-
 /// Width of the nearest GGX to a Beckmann lobe of width 1; both are shapes of slopes, so that it holds at every scale, along every axis.
 ///
 /// The densities cross where t = 0.205293540 and 2.828274919, and D is least where the product of both is α⁴; a test finds it anew.
@@ -199,7 +187,7 @@ pub const NEAREST_TO_BECKMANN: f64 = 0.872_919_562_483_5;
 pub fn formula(lobe: &Lobe) -> [f64; 2] {
     match lobe {
         Lobe::Ggx(w) | Lobe::Beckmann(w) => *w,
-        Lobe::Power(n) => n.map(alpha_of_power),
+        Lobe::Power(n) => n.map(equivalent_alpha),
     }
 }
 
@@ -210,7 +198,7 @@ pub fn nearest(lobe: &Lobe) -> [f64; 2] {
         Lobe::Ggx(w) => *w,
         Lobe::Beckmann(m) => m.map(|m| NEAREST_TO_BECKMANN * m),
         Lobe::Power(n) => {
-            let start = n.map(|n| libm::log(0.89 * alpha_of_power(n)));
+            let start = n.map(|n| libm::log(0.89 * equivalent_alpha(n)));
             if lobe.is_isotropic() {
                 let alpha =
                     golden(start[0] - 0.4, start[0] + 0.4, |x| distance(lobe, &Lobe::Ggx([libm::exp(x); 2])));

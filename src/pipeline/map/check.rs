@@ -10,6 +10,7 @@ use crate::maps::{
     Centre, Effort, Facet, Fitter, Footprint, Level, Lobe, Objective, RULES, Surface, Texel, reflected, rules,
 };
 use crate::picture::{Coverage, halved};
+use crate::verify::seeds::Seeds;
 use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -100,21 +101,20 @@ pub(super) fn measure(
 }
 
 fn compare(fitter: &mut Fitter, footprint: &Footprint, request: &MapRequest) -> Vec<f64> {
-    let one = |rule: &&rules::Rule| match rule.method {
-        rules::Method::Fit => 0.0,
-        rules::Method::Formula(_) => {
-            rule.apply(fitter, footprint, Centre::Mean, request.filter.shape).distance
-        }
-    };
-    RULES.iter().map(one).collect()
+    published().map(|r| r.apply(fitter, footprint, Centre::Mean, request.filter.shape).distance).collect()
+}
+
+/// The rules that a fit is compared with.
+fn published() -> impl Iterator<Item = &'static rules::Rule> {
+    RULES.iter().copied().filter(|r| matches!(r.method, rules::Method::Formula(_)))
 }
 
 fn sum(samples: &[Sample]) -> Measured {
     let n = samples.len() as f64;
     let mean = |of: &dyn Fn(&Sample) -> f64| samples.iter().map(of).sum::<f64>() / n;
     let largest = |of: &dyn Fn(&Sample) -> f64| samples.iter().map(of).fold(0.0, f64::max);
-    let compared = samples.first().is_some_and(|s| !s.rules.is_empty());
-    let published = RULES.iter().enumerate().filter(|(_, r)| compared && r.id != "fit");
+    // as many as were asked for: all or none
+    let compared = samples.first().map_or(0, |s| s.rules.len());
     Measured {
         texels: samples.len(),
         mean: mean(&|s| s.before),
@@ -122,7 +122,9 @@ fn sum(samples: &[Sample]) -> Measured {
         miss: largest(&|s| (s.before - s.told).abs()),
         stored_mean: mean(&|s| s.after),
         stored_largest: largest(&|s| s.after),
-        rules: published
+        rules: published()
+            .take(compared)
+            .enumerate()
             .map(|(i, r)| RuleMeasured {
                 rule: r.id,
                 mean: mean(&|s| s.rules[i]),
@@ -141,20 +143,11 @@ fn choose(level: &Level, k: usize, count: usize) -> Vec<usize> {
     let mut worst: Vec<usize> = (0..n).collect();
     worst.sort_by(|a, b| level.texels[*b].distance.total_cmp(&level.texels[*a].distance));
     worst.truncate(WORST);
-    #[allow(clippy::cast_possible_truncation, reason = "a remainder by a length")]
-    let seeded = (0..count).map(|i| (mixed((k as u64) << 32 | i as u64) % n as u64) as usize);
+    let seeded = (0..count).map(|i| Seeds::new((k as u64) << 32 | i as u64).index(n));
     let mut chosen: Vec<usize> = worst.into_iter().chain(seeded).collect();
     chosen.sort_unstable();
     chosen.dedup();
     chosen
-}
-
-/// A number that looks like chance: the finaliser of splitmix64.
-fn mixed(seed: u64) -> u64 {
-    let z = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
 }
 
 /// The facets under a texel: all, or every so many of each line.

@@ -157,14 +157,14 @@ pub fn run(
 ) -> Result<MapOutcome, MapError> {
     let sources = input::read(request, cancel)?;
     let pool = pool(settings.jobs)?;
-    let (levels, measured) = pool.install(|| -> Result<_, MapError> {
+    let (levels, maps, measured) = pool.install(|| -> Result<_, MapError> {
         let levels = maps::filter(&sources.surface, &request.filter, cancel, progress)?;
-        let planned = output::plan(request, &sources, &levels);
-        let measured = check::measure(request, &sources.surface, &levels, &planned, cancel)?;
-        Ok((levels, measured))
+        let maps = output::plan(request, &sources, &levels);
+        let measured = check::measure(request, &sources.surface, &levels, &maps, cancel)?;
+        Ok((levels, maps, measured))
     })?;
     let record = record::record(request, &sources, &levels, measured);
-    let files = pool.install(|| output::files(request, &sources, &levels, &record, cancel))?;
+    let files = pool.install(|| output::files(request, &maps, &record, cancel))?;
     let names: Vec<String> = files.iter().map(|f| f.name.clone()).chain([MANIFEST.to_owned()]).collect();
     let waiting = Waiting { timeout: settings.lock_timeout, told: &|| {} };
     transaction::check(&settings.out, &names).map_err(PipelineError::from)?;

@@ -5,6 +5,7 @@ use super::{MapError, MapRequest};
 use crate::cancel::Cancel;
 use crate::encode::Storage;
 use crate::encode::mips::{self, MipLevel, Mips};
+use crate::functions::conversion::gltf_anisotropy;
 use crate::grid::Channel;
 use crate::maps::{Centre, Level, Shape, Texel, signs};
 use crate::picture::shrink;
@@ -162,12 +163,11 @@ fn each(levels: &[Level], values: impl Fn(&Texel) -> Vec<f32>) -> Vec<MipLevel> 
     levels.iter().map(level).collect()
 }
 
-/// Strength of `KHR_materials_anisotropy`: α_max is mix(α_min, 1, strength²).
+/// Strength of `KHR_materials_anisotropy`.
 #[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]
 fn strength(t: &Texel) -> f32 {
     let lobe = t.lobe();
-    let room = 1.0 - lobe.alpha_min;
-    if room > 0.0 { ((lobe.alpha_max - lobe.alpha_min) / room).clamp(0.0, 1.0).sqrt() as f32 } else { 0.0 }
+    gltf_anisotropy([lobe.alpha_max, lobe.alpha_min]).1 as f32
 }
 
 /// The roughness, among the channels that it was packed with; those are shrunk by area.
@@ -194,8 +194,7 @@ fn roughness(sources: &Sources, levels: &[Level]) -> Map {
     let mut before = [picture.width, picture.height];
     for level in levels {
         if level.size != before {
-            for (c, plane) in planes.iter_mut().enumerate().filter(|(c, _)| c != index) {
-                let _ = c;
+            for (_, plane) in planes.iter_mut().enumerate().filter(|(c, _)| c != index) {
                 *plane = shrink(plane, before, level.size);
             }
             before = level.size;
@@ -212,14 +211,13 @@ fn roughness(sources: &Sources, levels: &[Level]) -> Map {
 /// The bytes of all files.
 pub(super) fn files(
     request: &MapRequest,
-    sources: &Sources,
-    levels: &[Level],
+    maps: &[Map],
     record: &super::MapRecord,
     cancel: &Cancel,
 ) -> Result<Vec<File>, MapError> {
     let mut out = Vec::new();
-    for kind in kinds(request) {
-        let map = map(kind, request, sources, levels);
+    for map in maps {
+        let kind = map.kind;
         for output in &request.outputs {
             let storage = output.storage(kind);
             let provenance = record.of(kind.id(), &map.channels, storage);
