@@ -1,6 +1,7 @@
 //! Damaged and hostile pictures: an error, never a panic, never a picture with holes.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "tests")]
 
+use crate::sample;
 use brdfbake::encode::read::{ReadError, read_bytes};
 use exr::image::write::WritableImage;
 use exr::prelude::{
@@ -61,18 +62,7 @@ fn seeds() -> &'static [Vec<u8>] {
     SEEDS.get_or_init(|| {
         use png::{BitDepth, ColorType};
         let mut seeds = Vec::new();
-        for compression in [
-            Compression::Uncompressed,
-            Compression::RLE,
-            Compression::ZIP1,
-            Compression::ZIP16,
-            Compression::PIZ,
-            Compression::PXR24,
-            Compression::B44,
-            Compression::B44A,
-            Compression::DWAA(None),
-            Compression::DWAB(None),
-        ] {
+        for compression in sample::COMPRESSIONS {
             seeds.push(exr_file(compression, Blocks::ScanLines, 1));
         }
         seeds.push(exr_file(Compression::ZIP16, Blocks::Tiles(exr::math::Vec2(8, 8)), 1));

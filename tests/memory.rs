@@ -9,15 +9,14 @@ mod sample;
 
 use brdfbake::cancel::Cancel;
 use brdfbake::encode::read::read_bytes;
-use brdfbake::encode::{ENCODERS, EncodeInput, Encoder, FileOption, Label, Shape, Storage, quantise_table};
+use brdfbake::encode::{ENCODERS, Encoder, FileOption, Label, Shape, Storage, quantise_table};
 use brdfbake::grid::{Axis, Grid, Quantity, Table, Texel, Warp};
 use brdfbake::pipeline::{PipelineError, Settings, Silent, memory, run};
 use brdfbake::plan::Plan;
 use brdfbake::recipe::parse;
 use exr::image::write::WritableImage;
 use exr::prelude::{
-    AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes,
-    LineOrder, f16,
+    AnyChannel, AnyChannels, Blocks, Encoding, FlatSamples, Image, Layer, LayerAttributes, LineOrder, f16,
 };
 use peak_alloc::PeakAlloc;
 use std::io::Cursor;
@@ -55,19 +54,7 @@ fn seeds() -> Vec<(String, Vec<u8>)> {
             seeds.push((format!("{}:{}", encoder.id(), storage.id()), bytes));
         }
     }
-    let all = [
-        Compression::Uncompressed,
-        Compression::RLE,
-        Compression::ZIP1,
-        Compression::ZIP16,
-        Compression::PIZ,
-        Compression::PXR24,
-        Compression::B44,
-        Compression::B44A,
-        Compression::DWAA(None),
-        Compression::DWAB(None),
-    ];
-    for compression in all {
+    for compression in sample::COMPRESSIONS {
         for blocks in [Blocks::ScanLines, Blocks::Tiles(exr::math::Vec2(8, 8))] {
             let samples = FlatSamples::F16((0..19 * 37).map(|i| f16::from_f32(i as f32 / 7.0)).collect());
             let channels = AnyChannels::sort([AnyChannel::new("Y", samples)].into_iter().collect());
@@ -243,17 +230,7 @@ fn measure_writing(encoder: &dyn Encoder, storage: Storage, options: &[FileOptio
     let shape = shape(grid);
     let table = table(grid.clone(), channels);
     let rounded = quantise_table(&table, storage).unwrap();
-    let input = EncodeInput {
-        grid: &table.grid,
-        channels: &table.channels,
-        values: &rounded.values,
-        blocks: &rounded.blocks,
-        errors: &table.errors,
-        storage,
-        options,
-        label: Label { name: "x", ..Label::default() },
-        cancel: &Cancel::new(),
-    };
+    let input = sample::input(&table, &rounded, storage, options, Label { name: "x", ..Label::default() });
     let what = format!("{}:{} {options:?}, {channels} channels", encoder.id(), storage.id());
     let (taken, file) = peak(|| encoder.encode(&input).unwrap());
     let (bytes, memory) = (encoder.most_bytes(&shape), encoder.most_memory(&shape));

@@ -1,7 +1,7 @@
 //! Tables of one to four axes and their files.
 
 use crate::sample;
-use brdfbake::encode::{EncodeError, EncodeInput, FileOption, Label, Storage, encoder, quantise_table};
+use brdfbake::encode::{EncodeError, FileOption, Label, Storage, encoder, quantise_table};
 use brdfbake::grid::{Axis, Channel, Grid, Quantity, Table, Texel};
 
 /// A table with axes of these lengths and `channels` channels in (0, 1).
@@ -38,16 +38,8 @@ pub(crate) fn written(
     let rounded = quantise_table(table, storage).unwrap();
     let provenance = sample::provenance(table, storage);
     let json = serde_json::to_string(&provenance).unwrap();
-    let input = EncodeInput {
-        grid: &table.grid,
-        channels: &table.channels,
-        values: &rounded.values,
-        blocks: &rounded.blocks,
-        errors: &table.errors,
-        storage,
-        options,
-        label: Label { name: &provenance.name, identity: &provenance.recipe.hash, provenance_json: &json },
-        cancel: &brdfbake::cancel::Cancel::new(),
-    };
-    Ok((encoder(container).unwrap().encode(&input)?, rounded.values))
+    let label = Label { name: &provenance.name, identity: &provenance.recipe.hash, provenance_json: &json };
+    let input = sample::input(table, &rounded, storage, options, label);
+    let bytes = encoder(container).unwrap().encode(&input)?;
+    Ok((bytes, rounded.values))
 }

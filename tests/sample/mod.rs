@@ -5,11 +5,13 @@
     reason = "each test file uses a part of it; a test may fail by panicking"
 )]
 
-use brdfbake::encode::{EncodeInput, Encoder, Label, Storage, quantise_table};
+use brdfbake::cancel::Cancel;
+use brdfbake::encode::{EncodeInput, Encoder, FileOption, Label, Quantised, Storage, quantise_table};
 use brdfbake::grid::provenance::{
     AxisRecord, Encoding, Integration, LawRecord, LawResult, RecipeId, Subject,
 };
 use brdfbake::grid::{Axis, Channel, Grid, Provenance, Quantity, Table, Texel, Warp};
+use exr::prelude::Compression;
 
 /// Seven texels of sqrt(mu) at their centres, five of roughness.
 pub(crate) fn grid() -> Grid {
@@ -87,26 +89,49 @@ pub(crate) fn provenance(table: &Table, storage: Storage) -> Provenance {
     }
 }
 
-/// The bytes of a table in a container.
-pub(crate) fn file(encoder: &dyn Encoder, table: &Table, storage: Storage, p: &Provenance) -> Vec<u8> {
-    let rounded = quantise_table(table, storage).unwrap();
-    let input = EncodeInput {
+/// What a container gets of a rounded table; nothing stops it.
+pub(crate) fn input<'a>(
+    table: &'a Table,
+    rounded: &'a Quantised,
+    storage: Storage,
+    options: &'a [FileOption],
+    label: Label<'a>,
+) -> EncodeInput<'a> {
+    static NEVER: Cancel = Cancel::new();
+    EncodeInput {
         grid: &table.grid,
         channels: &table.channels,
         values: &rounded.values,
         blocks: &rounded.blocks,
         errors: &table.errors,
         storage,
-        options: &[],
-        label: Label {
-            name: &p.name,
-            identity: &p.recipe.hash,
-            provenance_json: &serde_json::to_string(p).unwrap(),
-        },
-        cancel: &brdfbake::cancel::Cancel::new(),
-    };
-    encoder.encode(&input).unwrap()
+        options,
+        label,
+        cancel: &NEVER,
+    }
 }
+
+/// The bytes of a table in a container.
+pub(crate) fn file(encoder: &dyn Encoder, table: &Table, storage: Storage, p: &Provenance) -> Vec<u8> {
+    let rounded = quantise_table(table, storage).unwrap();
+    let json = serde_json::to_string(p).unwrap();
+    let label = Label { name: &p.name, identity: &p.recipe.hash, provenance_json: &json };
+    encoder.encode(&input(table, &rounded, storage, &[], label)).unwrap()
+}
+
+/// Every compression of OpenEXR.
+pub(crate) const COMPRESSIONS: [Compression; 10] = [
+    Compression::Uncompressed,
+    Compression::RLE,
+    Compression::ZIP1,
+    Compression::ZIP16,
+    Compression::PIZ,
+    Compression::PXR24,
+    Compression::B44,
+    Compression::B44A,
+    Compression::DWAA(None),
+    Compression::DWAB(None),
+];
 
 /// Values that are hard to carry: ties, subnormals, the largest, negative numbers, a negative zero.
 pub(crate) fn hard(storage: Storage) -> fn(usize, f64) -> f64 {

@@ -189,7 +189,7 @@ pub(crate) fn truths(t: &Texel) -> Truths {
         "beer-lambert" => ["sigma_r", "sigma_g", "sigma_b"]
             .iter()
             .map(|id| {
-                let depth = p.number(id).unwrap_or(f64::NAN) * t.axis("path");
+                let depth = p.number(id).unwrap() * t.axis("path");
                 let value = if t.layout == "lost" { -(-depth).exp_m1() } else { (-depth).exp() };
                 (value, 1e-15 + 1e-15 * value * depth)
             })
@@ -273,10 +273,7 @@ pub(crate) fn conductor(c: f64, n: f64, k: f64) -> [f64; 2] {
 fn conductor_channels(t: &Texel, p: &Params) -> Truths {
     let metal = metals::find(p.choice("metal").unwrap());
     let of = |lambda: f64| {
-        let (n, k) = metal
-            .map_or((p.number("n").unwrap_or(f64::NAN), p.number("k").unwrap_or(f64::NAN)), |m| {
-                m.index(lambda)
-            });
+        let (n, k) = metal.map_or((p.number("n").unwrap(), p.number("k").unwrap()), |m| m.index(lambda));
         conductor(t.axis("mu"), n, k)
     };
     let all = metals::RGB_NM.map(of);
@@ -289,7 +286,7 @@ fn conductor_channels(t: &Texel, p: &Params) -> Truths {
 }
 
 fn schlick_variant(t: &Texel, p: &Params) -> (f64, f64) {
-    let n = |id: &str| p.number(id).unwrap_or(f64::NAN);
+    let n = |id: &str| p.number(id).unwrap();
     let mu = t.axis("mu");
     let m = 1.0 - mu;
     let index = |n: f64, k: f64| ((n - 1.0) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k);
@@ -375,8 +372,8 @@ fn masking(distribution: &str, mu: f64, alpha: f64) -> ((f64, f64), f64) {
 fn visibility(t: &Texel, p: &Params) -> (f64, f64) {
     let (mu_o, mu_i) = (t.axis("mu"), t.axis("mu_i"));
     let d = p.choice("distribution").unwrap();
-    let ((g_o, _), l_o) = masking(d, mu_o, p.number("alpha").unwrap_or(f64::NAN));
-    let ((g_i, _), l_i) = masking(d, mu_i, p.number("alpha").unwrap_or(f64::NAN));
+    let ((g_o, _), l_o) = masking(d, mu_o, p.number("alpha").unwrap());
+    let ((g_i, _), l_i) = masking(d, mu_i, p.number("alpha").unwrap());
     let separable = p.choice("masking").unwrap() == "separable" || d.starts_with("schlick");
     let g2 = if separable { g_o * g_i } else { 1.0 / (1.0 + l_o + l_i) };
     if t.layout == "g2" { (g2, 1e-14) } else { exact_times(g2 / (4.0 * mu_o * mu_i), 10.0) }
@@ -398,9 +395,9 @@ impl Phase {
     pub(crate) fn new(p: &Params) -> Phase {
         Phase {
             id: p.choice("phase").unwrap(),
-            g: p.number("g").unwrap_or(f64::NAN),
-            alpha: p.number("draine_alpha").unwrap_or(f64::NAN),
-            diameter: p.number("diameter").unwrap_or(f64::NAN),
+            g: p.number("g").unwrap(),
+            alpha: p.number("draine_alpha").unwrap(),
+            diameter: p.number("diameter").unwrap(),
         }
     }
 
@@ -455,7 +452,7 @@ impl Profile {
             }
             "dipole" => {
                 let (a, s) = (rgb("sigma_a"), rgb("sigma_s"));
-                let f = dipole::internal_reflectance(p.number("eta").unwrap_or(f64::NAN));
+                let f = dipole::internal_reflectance(p.number("eta").unwrap());
                 Profile::Dipole([0, 1, 2].map(|c| {
                     let t = a[c] + s[c];
                     let z = [1.0 / t, (1.0 + 4.0 / 3.0 * (1.0 + f) / (1.0 - f)) / t];
@@ -566,7 +563,7 @@ fn merl(t: &Texel, p: &Params) -> Truths {
     let along = cos_d * cos_h;
     let across = sin_d * phi.cos() * sin_h;
     let (mu_o, mu_i) = (along + across, along - across);
-    let alpha = draw.params.number("alpha").unwrap_or(f64::NAN);
+    let alpha = draw.params.number("alpha").unwrap();
     let value = if mu_o > 0.0 && mu_i > 0.0 {
         crate::sweep::lobe::value(&draw, alpha, [h, cos_d], [mu_o, mu_i])
     } else {

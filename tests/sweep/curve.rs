@@ -100,7 +100,7 @@ fn tail(values: &[f64]) -> f64 {
 pub(crate) fn compensated(draw: &Draw) -> (f64, f64) {
     let p = &draw.params;
     let mu = draw.mu;
-    let (alpha, gamma) = ([p.number("alpha").unwrap_or(f64::NAN); 2], p.number("gamma").unwrap_or(f64::NAN));
+    let (alpha, gamma) = ([p.number("alpha").unwrap(); 2], p.optional("gamma").unwrap_or(f64::NAN));
     let single =
         lobe::microfacet(p.choice("base").unwrap(), alpha, gamma, masking(p), (schlick_of(p), vec![]));
     let one = Fresnel::Schlick { f0: 1.0, f90: 1.0 };
@@ -168,8 +168,8 @@ fn charlie(roughness: f64, mu: f64) -> f64 {
 /// The material of glTF: its lobes, with the curve of the sheen.
 pub(crate) fn gltf(draw: &Draw) -> (f64, f64) {
     let p = &draw.params;
-    let number = |id: &str| p.number(id).unwrap_or(f64::NAN);
-    let square = |id: &str| p.number(id).unwrap_or(f64::NAN) * p.number(id).unwrap_or(f64::NAN);
+    let number = |id: &str| p.number(id).unwrap();
+    let square = |id: &str| p.number(id).unwrap() * p.number(id).unwrap();
     let mu = draw.mu;
     let (sheen, metallic, rho) = (number("sheen"), number("metallic"), number("base_color"));
     let rough = square("sheen_roughness");

@@ -186,7 +186,7 @@ pub(crate) fn truths(t: &Texel) -> Truths {
         "generalised-schlick" => generalised(t),
         "sheen-scaling" => {
             let (e, error) = truth::albedo(&t.draw(false)).unwrap_or(NONE);
-            let sheen = t.resolved().number("sheen").unwrap_or(f64::NAN);
+            let sheen = t.resolved().number("sheen").unwrap();
             let of = |id: &str| {
                 if id == "sheen.scaling" { ((1.0 - sheen * e).max(0.0), sheen * error) } else { (e, error) }
             };
@@ -277,7 +277,7 @@ fn side(t: &Texel, channel: &str, reflected: OfDraw<'_>, crossing: OfDraw<'_>) -
     let (name, inside) = channel.strip_suffix(".inside").map_or((channel, false), |n| (n, true));
     let mut draw = t.draw(false);
     if inside {
-        let eta = 1.0 / draw.params.number("eta").unwrap_or(f64::NAN);
+        let eta = 1.0 / draw.params.number("eta").unwrap();
         draw.params.set("eta", eta);
     }
     match name.as_bytes()[0] {
@@ -296,7 +296,7 @@ fn mean(
     setting: &quad::Setting,
     e: &(dyn Fn(&Draw, &quad::Setting, f64) -> f64 + Sync),
 ) -> (f64, f64) {
-    let eta = draw.params.number("eta").unwrap_or(f64::NAN);
+    let eta = draw.params.number("eta").unwrap();
     let breaks = if eta < 1.0 { vec![((1.0 - eta) * (1.0 + eta)).sqrt()] } else { vec![] };
     let mut ends = vec![quad::mark(0.0), quad::mark(18.0)];
     let inner: Vec<quad::Edge> = breaks.iter().map(|mu| quad::sharp(-mu.ln())).collect();
@@ -353,7 +353,7 @@ fn compensation(t: &Texel) -> Truths {
 fn glass(t: &Texel) -> Truths {
     let above = t.draw(false);
     let mut inside = above.clone();
-    let eta = above.params.number("eta").unwrap_or(f64::NAN);
+    let eta = above.params.number("eta").unwrap();
     inside.params.set("eta", 1.0 / eta);
     let missing = |d: &Draw| {
         let (r, t) = (truth::albedo(d).unwrap_or(NONE), crossing(d));
@@ -387,7 +387,7 @@ fn glass(t: &Texel) -> Truths {
 fn generalised(t: &Texel) -> Truths {
     let own = t.resolved();
     let draw = t.draw(true);
-    let (exponent, eta) = (own.number("exponent").unwrap_or(f64::NAN), own.number("eta").unwrap_or(f64::NAN));
+    let (exponent, eta) = (own.number("exponent").unwrap(), own.number("eta").unwrap());
     let dielectric = own.choice("curve").unwrap() == "dielectric";
     let f0 = fresnel::dielectric(1.0, eta).unpolarised();
     let curve = move |v: f64| {
@@ -403,11 +403,9 @@ fn generalised(t: &Texel) -> Truths {
             if draw.flat() {
                 (curve(draw.mu), 1e-15)
             } else {
-                let lobe = crate::sweep::lobe::visible(
-                    &draw.model.id[..],
-                    draw.params.number("alpha").unwrap_or(f64::NAN),
-                )
-                .times(curve);
+                let lobe =
+                    crate::sweep::lobe::visible(&draw.model.id[..], draw.params.number("alpha").unwrap())
+                        .times(curve);
                 two_settings(|s, t| lobe.integrate(draw.mu, 0.0, s, t))
             }
         }

@@ -27,10 +27,8 @@ pub(crate) fn truths(t: &Texel) -> Truths {
             let metal = metals::find(p.choice("metal").unwrap());
             let kinks: Vec<f64> = metal.into_iter().flat_map(|m| m.rows).map(|row| row[0]).collect();
             daylight(&kinks, &|lambda| {
-                let (n, k) = metal
-                    .map_or((p.number("n").unwrap_or(f64::NAN), p.number("k").unwrap_or(f64::NAN)), |m| {
-                        m.index(lambda)
-                    });
+                let (n, k) =
+                    metal.map_or((p.number("n").unwrap(), p.number("k").unwrap()), |m| m.index(lambda));
                 let [s, p] = conductor(t.axis("mu"), n, k);
                 0.5 * (s + p)
             })
@@ -90,11 +88,9 @@ fn blackbody(t: &Texel, p: &Params) -> Truths {
         })
     };
     let y = sum(temperature, &|xyz| xyz[1]);
-    let reference = sum(p.number("reference").unwrap_or(f64::NAN), &|xyz| xyz[1]);
+    let reference = sum(p.number("reference").unwrap(), &|xyz| xyz[1]);
     let factor = match t.layout.as_str() {
-        "light" => {
-            y.0 * scale(temperature) / (reference.0 * scale(p.number("reference").unwrap_or(f64::NAN)))
-        }
+        "light" => y.0 * scale(temperature) / (reference.0 * scale(p.number("reference").unwrap())),
         _ => 1.0,
     };
     (0..3)
@@ -225,7 +221,7 @@ fn sampling(t: &Texel, p: &Params) -> Truths {
 /// The deflection beyond which the part u lies.
 fn phase(t: &Texel, p: &Params) -> (f64, f64) {
     let (f, u) = (Phase::new(p), t.axis("u"));
-    let width = (1.0 - p.number("g").unwrap_or(f64::NAN).abs()).clamp(1e-3, 1.0);
+    let width = (1.0 - p.number("g").unwrap().abs()).clamp(1e-3, 1.0);
     let density = |theta: f64| TAU * f.at(theta) * theta.sin();
     let part = |a: f64, b: f64| {
         let inner = [width, 3.0 * width, PI - width, PI - 3.0 * width, 0.1, 0.5, PI - 0.5].map(mark).to_vec();
@@ -263,7 +259,7 @@ fn importance(t: &Texel) -> Truths {
     let mu = draw.mu;
     let wo = DVec3::new(((1.0 - mu) * (1.0 + mu)).sqrt(), 0.0, mu);
     let theta_o = mu.acos();
-    let alpha = draw.params.number("alpha").unwrap_or(f64::NAN);
+    let alpha = draw.params.number("alpha").unwrap();
     let alpha = if alpha.is_nan() { 1.0 } else { alpha };
     let f = |theta: f64, phi: f64| {
         let (sin, cos) = theta.sin_cos();

@@ -76,16 +76,13 @@ pub(crate) fn over<'a>(lobe: Lobe<'a>, of: impl Fn(&Pair, f64) -> f64 + Sync + '
 
 /// The Fresnel factor of a model by its parameters, and the cosines at which it is not smooth.
 pub(crate) fn fresnel(params: &Params) -> (Fresnel, Vec<f64>) {
-    let eta = params.number("eta").unwrap_or(f64::NAN);
-    if eta.is_nan() {
-        return (
-            Fresnel::Schlick { f0: params.number("f0").unwrap(), f90: params.number("f90").unwrap() },
-            vec![],
-        );
-    }
-    let k = params.number("k").unwrap_or(f64::NAN);
+    let Some(eta) = params.optional("eta") else {
+        let number = |id: &str| params.number(id).unwrap();
+        return (Fresnel::Schlick { f0: number("f0"), f90: number("f90") }, vec![]);
+    };
     let line = if eta < 1.0 { vec![((1.0 - eta) * (1.0 + eta)).sqrt()] } else { vec![] };
-    if k.is_nan() { (Fresnel::Dielectric { eta }, line) } else { (Fresnel::Conductor { eta, k }, line) }
+    let factor = params.optional("k").map_or(Fresnel::Dielectric { eta }, |k| Fresnel::Conductor { eta, k });
+    (factor, line)
 }
 
 /// Density of slopes over the widths, times rho^2 so that long tails do not underflow: `P22 ax ay rho^2`.

@@ -22,7 +22,7 @@ const INFINITE: &str = "E is infinite at mu = 0";
 /// E of a draw.
 pub(crate) fn albedo(draw: &Draw) -> Truth {
     let (p, mu, phi) = (&draw.params, draw.mu, draw.phi);
-    let number = |id: &str| p.number(id).unwrap_or(f64::NAN);
+    let number = |id: &str| p.number(id).unwrap();
     let lobe = |lobe: Lobe<'_>| Ok(two_settings(|s, t| lobe.integrate(mu, phi, s, t)));
     let exact = |value: f64| Ok((value, 2e-16 * value.abs()));
     if draw.flat() {
@@ -120,7 +120,7 @@ pub(crate) fn albedo(draw: &Draw) -> Truth {
 /// The lobe of a model that is one half-vector lobe, and the relative error of what it is made of.
 pub(crate) fn half_vector(draw: &Draw) -> Option<(Lobe<'static>, f64)> {
     let p = &draw.params;
-    let number = |id: &str| p.number(id).unwrap_or(f64::NAN);
+    let number = |id: &str| p.number(id).unwrap();
     let lobe = match draw.model.id {
         "ashikhmin-shirley-specular" => {
             lobe::ashikhmin_shirley(number("rs"), number("nu"), number("nv"), draw.mu)
@@ -173,14 +173,14 @@ pub(crate) fn transmitted_once(draw: &Draw, setting: &Setting, tolerance: f64) -
 }
 
 fn smooth(draw: &Draw) -> Option<f64> {
-    let eta = draw.params.number("eta").unwrap_or(f64::NAN);
+    let eta = draw.params.number("eta").unwrap();
     draw.flat().then(|| fresnel::dielectric_transmittance(draw.mu, eta).unpolarised())
 }
 
 fn interface(draw: &Draw) -> Option<Interface> {
     let p = &draw.params;
-    let alpha = p.number("alpha_x").unwrap_or(f64::NAN);
-    if alpha != p.number("alpha_y").unwrap_or(f64::NAN) {
+    let alpha = p.number("alpha_x").unwrap();
+    if alpha != p.number("alpha_y").unwrap() {
         return None;
     }
     let across = match p.choice("masking").unwrap() {
@@ -195,7 +195,7 @@ fn interface(draw: &Draw) -> Option<Interface> {
     Some(Interface {
         mu: draw.mu,
         alpha,
-        eta: p.number("eta").unwrap_or(f64::NAN),
+        eta: p.number("eta").unwrap(),
         across,
         ndf,
         density,
@@ -227,8 +227,8 @@ fn smith<'a>(draw: &Draw) -> Lobe<'a> {
     let base = ["ggx", "beckmann"].into_iter().find(|b| id.starts_with(b)).unwrap_or("student-t");
     lobe::microfacet(
         base,
-        [p.number("alpha_x").unwrap_or(f64::NAN), p.number("alpha_y").unwrap_or(f64::NAN)],
-        p.number("gamma").unwrap_or(f64::NAN),
+        [p.number("alpha_x").unwrap(), p.number("alpha_y").unwrap()],
+        p.optional("gamma").unwrap_or(f64::NAN),
         masking(p),
         lobe::fresnel(p),
     )
@@ -251,7 +251,7 @@ fn diffuse(draw: &Draw) -> (f64, f64) {
 /// GTR: the masking is a curve of its own rule.
 fn gtr(draw: &Draw) -> (Lobe<'static>, f64) {
     let p = &draw.params;
-    let (alpha, gamma) = (p.number("alpha").unwrap_or(f64::NAN), p.number("gamma").unwrap_or(f64::NAN));
+    let (alpha, gamma) = (p.number("alpha").unwrap(), p.optional("gamma").unwrap_or(f64::NAN));
     let exact = move |mu: f64| lobe::gtr_mu_lambda(alpha, gamma, mu, &quad::SECOND);
     let curve = Curve::new(split(&[-34.0, 34.0], 2.0), 24, &exact);
     let error = curve.error();
