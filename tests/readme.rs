@@ -118,10 +118,14 @@ fn extensions() -> String {
                 Asks::RoughnessTexture => {
                     "the tables of the base layer, over the roughness of its own texture".to_owned()
                 }
-                Asks::Lobe(lobe) => {
-                    format!("the `{}` tables, for its {} with a roughness of its own", lobe.table, lobe.layer)
+                Asks::Layer([], _) => {
+                    "nothing of its own: closed forms, and the tables of other layers".to_owned()
                 }
-                Asks::NotYet { table, .. } => format!("{table}, which is not baked for scenes yet"),
+                Asks::Layer(families, _) => format!("the `{}` tables", families.join("`, `")),
+                Asks::AreaLights => "the `area-light` tables, over the roughness of every lobe".to_owned(),
+                Asks::Replaced(by) => format!("nothing: {by} in place of glTF's material model"),
+                Asks::Unknown(why) => format!("unknown: {why}"),
+                Asks::NotYet { table, .. } => format!("{table}, for which there is no kind of table"),
             };
             format!("| `{}` | {asks} |", e.name)
         }),

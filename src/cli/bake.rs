@@ -15,11 +15,13 @@ use std::sync::Arc;
 pub struct Args {
     /// Recipe file (TOML), or the name of a preset; the preset `default` if nothing else is given.
     recipe: Option<String>,
-    /// Bake only what the materials of this glTF file (.gltf, .glb) ask for.
-    #[arg(long, value_name = "FILE", conflicts_with = "recipe")]
-    scene: Option<PathBuf>,
-    /// Bake the tables that this engine loads, in its own files (`list engines`).
-    #[arg(long, value_name = "ENGINE", conflicts_with_all = ["recipe", "scene"])]
+    /// Bake only what the materials of these glTF files (.gltf, .glb, folders, patterns) ask for.
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with = "recipe")]
+    scene: Vec<PathBuf>,
+    #[command(flatten)]
+    look: scene::Look,
+    /// Bake the tables that this engine loads, in its own files (`list engines`); with `--scene` only those that it needs.
+    #[arg(long, value_name = "ENGINE", conflicts_with = "recipe")]
     engine: Option<String>,
     /// Bake nothing: print the smallest table that the engine's shader could read to within this error, its recipe, and
     /// the lines that read it. 1e-3 if no error is given.
@@ -39,13 +41,17 @@ pub struct Args {
     /// Text on stderr, or one JSON object a line on stdout.
     #[arg(long, value_enum, default_value = "human")]
     message_format: Format,
-    /// Write nothing, and end with 4, where a law could not be checked or a texel misses its tolerance.
+    /// Write nothing, and end with 4, where a law could not be checked, a texel misses its tolerance, or something that a scene
+    /// needs is not baked or not known.
     #[arg(long)]
     strict: bool,
     /// Print the plan and the file names, and bake nothing.
     #[arg(long)]
     dry_run: bool,
 }
+
+/// What `--strict` says of scenes.
+const DOUBT: &str = "something that the scene needs is not baked, is cut, or is not known; nothing was written, since `strict` is set";
 
 /// Runs it.
 ///
@@ -64,13 +70,23 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
             cancel,
         );
     }
-    let (engine, plan) = match (engine, &args.scene) {
-        (Some((engine, plan)), _) => (Some(engine), plan),
-        (None, Some(path)) => match scene::plan(path, args.quiet, args.message_format)? {
-            Some(plan) => (None, plan),
-            None => return Ok(Exit::Done),
-        },
-        (None, None) => (None, plan(args.recipe.as_deref().unwrap_or("default"))?),
+    let (engine, plan) = if args.scene.is_empty() {
+        match engine {
+            Some((engine, plan)) => (Some(engine), plan),
+            None => (None, plan(args.recipe.as_deref().unwrap_or("default"))?),
+        }
+    } else {
+        let entry = engine.as_ref().map(|(engine, _)| *engine);
+        let job = scene::job(&args.scene, &args.look, engine, args.limits.jobs())?;
+        match args.message_format {
+            Format::Json => output::data(&scene::json(&job).to_string()).map(|_| ())?,
+            Format::Human if args.quiet => {}
+            Format::Human => scene::tell(&job),
+        }
+        if args.strict && job.in_doubt() {
+            return Err(Failure::new(Exit::Failed, DOUBT));
+        }
+        (entry, job.plan)
     };
     let settings = Settings { strict: args.strict, ..args.limits.settings(&args.out) };
     if args.dry_run {

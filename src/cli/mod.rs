@@ -17,6 +17,7 @@ pub mod limits;
 pub mod list;
 pub mod map;
 pub mod output;
+pub mod plan;
 pub mod plot;
 pub mod progress;
 pub mod scene;
@@ -42,6 +43,8 @@ pub struct Cli {
 enum Verb {
     /// Bake the tables of a recipe, a preset, an engine or a glTF scene.
     Bake(bake::Args),
+    /// Tell what glTF scenes need: each table, who asks for it, its axes, bytes and seconds, and what was left out and why.
+    Plan(plan::Args),
     /// Print what a baked file (or any picture of a format that is read) holds.
     Inspect(inspect::Args),
     /// Compare two images or two output folders.
@@ -77,6 +80,7 @@ enum Verb {
 pub fn run(cli: Cli, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     match cli.verb {
         Verb::Bake(args) => bake::run(&args, cancel),
+        Verb::Plan(args) => plan::run(&args),
         Verb::Inspect(args) => inspect::run(&args, cancel),
         Verb::Diff(args) => diff::run(&args, cancel),
         Verb::Map(args) => map::run(&args, cancel),

@@ -1,56 +1,227 @@
-//! `brdfbake bake --scene FILE`: the plan that a glTF scene asks for, and what was left out and why.
+//! What verbs that take glTF scenes share: the files, how they are looked at, and what is said of them.
 
-use super::progress::Format;
 use super::{Exit, Failure, output};
-use crate::plan::scene::ScenePlanError;
-use crate::plan::{self, Plan};
-use crate::scene::{self, Limits, Needs};
-use std::path::Path;
+use crate::math::figures::short;
+use crate::pipeline::pool;
+use crate::plan::Plan;
+use crate::plan::scene::{self as planning, Asked, ScenePlanError, Survey, SurveyOptions};
+use crate::recipe::Engine;
+use crate::scene::{Fault, LeftOut, LeftOutKind, Need, Reader, SceneError};
+use std::path::{Path, PathBuf};
 
-/// Reads the scene, tells what it needs and what is left out, and plans the tables; `None` if it needs none.
-pub(super) fn plan(path: &Path, quiet: bool, format: Format) -> Result<Option<Plan>, Failure> {
-    let scene = scene::read(path, &Limits::default()).map_err(|e| {
-        let exit = if matches!(e.fault, scene::Fault::Io { .. }) { Exit::Io } else { Exit::Input };
-        Failure::new(exit, e)
-    })?;
-    let needs = scene::analyse(&scene);
-    match format {
-        Format::Json => json(&scene.file_name, &needs)?,
-        Format::Human if quiet => {}
-        Format::Human => human(&scene, &needs),
-    }
-    plan::scene::plan(&needs).map_err(|e| {
-        let exit =
-            if matches!(e, ScenePlanError::Family { .. }) { Exit::Unsupported } else { Exit::Internal };
-        Failure::new(exit, e)
-    })
+/// How scenes are looked at.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Look {
+    /// Read pictures of a scene below this folder; without it those that lie outside the scene's own folder are unknown.
+    #[arg(long, value_name = "DIR")]
+    root: Option<PathBuf>,
+    /// Largest picture that is read, in pixels: four bytes of memory each. Larger ones are unknown.
+    #[arg(long, value_name = "N", default_value_t = planning::PIXELS, value_parser = clap::value_parser!(u64).range(1..=1 << 32))]
+    pixels: u64,
+    /// Tables go so far beyond the roughness of the scenes, on either side.
+    #[arg(long, value_name = "ROUGHNESS", default_value = "0", value_parser = margin)]
+    margin: f64,
 }
 
-fn human(scene: &scene::Scene, needs: &Needs) {
-    output::talk(&format!("scene {}: {} materials", scene.file_name, scene.materials.len()));
-    for need in &needs.needs {
-        let [lo, hi] = need.roughness;
-        let (n, s) = (need.asked_by.len(), if need.asked_by.len() == 1 { "" } else { "s" });
-        output::talk(&format!(
-            "  needs {} tables, roughness [{lo}, {hi}], asked {n} time{s}, such as",
-            need.table
-        ));
-        for asked in need.asked_by.iter().take(4) {
-            output::talk(&format!("    {}: {}", asked.material, asked.why));
+fn margin(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| "it is no number".to_owned())?;
+    if (0.0..=1.0).contains(&number) { Ok(number) } else { Err("it must be from 0 to 1".to_owned()) }
+}
+
+/// Scenes, what they need, and what is baked for them.
+#[derive(Debug)]
+pub(super) struct Job {
+    pub(super) survey: Survey,
+    /// The tables, one for one those of `plan` unless an engine has its own.
+    pub(super) asked: Vec<Asked>,
+    pub(super) plan: Plan,
+    /// Tables of the engine that the scenes do not need.
+    pub(super) dropped: Vec<String>,
+}
+
+impl Job {
+    /// Is something needed and not baked, cut, or not known?
+    pub(super) fn in_doubt(&self) -> bool {
+        self.survey.needs.in_doubt() || self.asked.iter().any(|a| !a.notes.is_empty())
+    }
+}
+
+/// Reads scenes, tells what they need, and plans the tables.
+pub(super) fn job(
+    paths: &[PathBuf],
+    look: &Look,
+    engine: Option<(&'static Engine, Plan)>,
+    jobs: Option<usize>,
+) -> Result<Job, Failure> {
+    let files = files(paths)?;
+    let roughness = engine.as_ref().map(|(engine, _)| engine.roughness);
+    let reader = Reader {
+        at_least: roughness.map_or(0.0, |r| r.at_least),
+        widens: roughness.is_some_and(|r| r.widens),
+        margin: look.margin,
+    };
+    let options = SurveyOptions { root: look.root.clone(), pixels: look.pixels, reader };
+    let survey = pool(jobs)?.install(|| planning::survey(&files, &options)).map_err(|e| refused(&e))?;
+    let asked = planning::asked(&survey.needs).map_err(unplanned)?;
+    let (plan, dropped) = match engine {
+        None => (planning::plan(&survey.needs).map_err(unplanned)?, Vec::new()),
+        Some((_, plan)) => {
+            let (plan, dropped) = needed(plan, &survey);
+            (Some(plan), dropped)
+        }
+    };
+    let plan = plan.unwrap_or_else(|| Plan::nothing(planning::NAME));
+    let reasons = planning::reasons(&survey, &asked);
+    Ok(Job { survey, asked, plan: plan.because(reasons), dropped })
+}
+
+/// The tables of an engine that serve what the scenes need.
+fn needed(plan: Plan, survey: &Survey) -> (Plan, Vec<String>) {
+    let needs = |table: &crate::plan::PlannedTable| {
+        let spec = &table.bound.spec;
+        planning::served(spec.kind.id, spec.model.as_ref().map(|(info, _)| info.id))
+            .any(|family| survey.needs.needs.iter().any(|n| n.table == family))
+    };
+    let dropped = plan.tables.iter().filter(|t| !needs(t)).map(|t| t.name().to_owned()).collect();
+    (plan.only(needs), dropped)
+}
+
+/// The files that arguments name: a file, a folder with all below it, or a pattern.
+fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    let mut all = Vec::new();
+    for path in paths {
+        if path.is_dir() {
+            let folder = glob::Pattern::escape(&path.to_string_lossy());
+            let mut below = Vec::new();
+            for extension in ["gltf", "glb"] {
+                below.extend(matching(&format!("{folder}/**/*.{extension}"))?);
+            }
+            below.sort();
+            none_is_a_fault(&below, path)?;
+            all.extend(below);
+        } else if path.exists() || !path.to_string_lossy().contains(['*', '?', '[']) {
+            all.push(path.clone());
+        } else {
+            let found = matching(&path.to_string_lossy())?;
+            none_is_a_fault(&found, path)?;
+            all.extend(found);
         }
     }
-    for left in &needs.left_out {
-        output::talk(&format!("  left out: {left}"));
+    let mut seen = std::collections::BTreeSet::new();
+    all.retain(|path| seen.insert(path.clone()));
+    Ok(all)
+}
+
+fn none_is_a_fault(found: &[PathBuf], path: &Path) -> Result<(), Failure> {
+    if found.is_empty() {
+        return Err(Failure::input(format!("{}: there is no .gltf or .glb file", path.display())));
     }
-    for warning in &scene.warnings {
-        output::talk(&format!("  warning: {warning}"));
+    Ok(())
+}
+
+fn matching(pattern: &str) -> Result<Vec<PathBuf>, Failure> {
+    let paths = glob::glob(pattern).map_err(|e| Failure::usage(format!("{pattern}: {e}")))?;
+    paths.map(|path| path.map_err(|e| Failure::new(Exit::Io, e))).collect()
+}
+
+/// All scenes that were refused, one a line; the machine's fault only if it is all of them.
+fn refused(errors: &[SceneError]) -> Failure {
+    let io = errors.iter().all(|e| matches!(e.fault, Fault::Io { .. }));
+    let lines: Vec<String> = errors.iter().map(ToString::to_string).collect();
+    Failure::new(if io { Exit::Io } else { Exit::Input }, lines.join("\nerror: "))
+}
+
+fn unplanned(error: ScenePlanError) -> Failure {
+    let exit =
+        if matches!(error, ScenePlanError::Family { .. }) { Exit::Unsupported } else { Exit::Internal };
+    Failure::new(exit, error)
+}
+
+/// Most lines of a kind that are told.
+const LINES: usize = 12;
+
+/// What scenes need and what was left out, for people.
+pub(super) fn tell(job: &Job) {
+    let survey = &job.survey;
+    let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    let materials = survey.scenes.iter().map(|s| s.materials).sum();
+    let images: usize = survey.scenes.iter().map(|s| s.images).sum();
+    let name = match survey.scenes.as_slice() {
+        [one] => format!("scene {}", crate::math::shown::show(&one.file)),
+        all => count(all.len(), "scene"),
+    };
+    output::talk(&format!("{name}: {}, {} read", count(materials, "material"), count(images, "picture")));
+    for need in &survey.needs.needs {
+        tell_need(need, survey.scenes.len() > 1);
     }
-    if needs.needs.is_empty() {
+    for note in job.asked.iter().flat_map(|a| a.notes.iter().map(move |n| (a, n))).take(LINES) {
+        output::talk(&format!("  cut: {}: {}", note.0.request.name, note.1));
+    }
+    for name in &job.dropped {
+        output::talk(&format!("  left out: {name}: nothing in the scene asks for it"));
+    }
+    folded(survey.needs.left_out.iter().map(|left| format!("  left out: {}", shown(left))));
+    let warnings = survey.scenes.iter().flat_map(|s| s.warnings.iter().map(move |w| (&s.file, w)));
+    folded(warnings.map(|(file, w)| format!("  warning: {}: {w}", crate::math::shown::show(file))));
+    if job.plan.tables.is_empty() {
         output::talk("  nothing to bake");
     }
 }
 
-fn json(file: &str, needs: &Needs) -> Result<(), Failure> {
-    let line = serde_json::json!({ "reason": "scene", "file": file, "needs": needs.needs, "left_out": needs.left_out });
-    output::data(&line.to_string()).map(|_| ())
+fn shown(left: &LeftOut) -> String {
+    match left.kind {
+        LeftOutKind::Unknown => format!("{left} [unknown]"),
+        LeftOutKind::NotSupported => format!("{left} [not supported]"),
+        _ => left.to_string(),
+    }
+}
+
+fn tell_need(need: &Need, with_files: bool) {
+    let ranges: Vec<String> = need
+        .ranges
+        .iter()
+        .map(|(id, r)| match (&r.values, r.value()) {
+            (_, Some(value)) => format!("{id} {}", short(value)),
+            (Some(values), _) => {
+                format!("{id} {}", values.iter().map(short).collect::<Vec<_>>().join(" and "))
+            }
+            _ => format!("{id} [{}, {}]", short(r.lo), short(r.hi)),
+        })
+        .collect();
+    let (n, s) = (need.asked_by.len(), if need.asked_by.len() == 1 { "" } else { "s" });
+    output::talk(&format!(
+        "  needs {} tables, {}, asked {n} time{s}, such as",
+        need.table,
+        ranges.join(", ")
+    ));
+    for asked in need.asked_by.iter().take(4) {
+        let file = if with_files {
+            format!("{} ", crate::math::shown::show(&asked.material.file))
+        } else {
+            String::new()
+        };
+        output::talk(&format!("    {file}{}: {}", asked.material, asked.why));
+    }
+}
+
+/// The first lines, and how many more there are.
+fn folded(lines: impl Iterator<Item = String>) {
+    let mut more = 0;
+    for (i, line) in lines.enumerate() {
+        if i < LINES { output::talk(&line) } else { more += 1 }
+    }
+    if more > 0 {
+        output::talk(&format!("  and {more} more; `plan --json` lists all"));
+    }
+}
+
+/// The same as one JSON object.
+pub(super) fn json(job: &Job) -> serde_json::Value {
+    let mut line = serde_json::json!({ "reason": "scene" });
+    if let (Some(to), Some(from)) =
+        (line.as_object_mut(), job.plan.reasons.as_ref().and_then(|r| r.as_object()))
+    {
+        to.extend(from.clone());
+    }
+    line
 }

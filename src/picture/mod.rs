@@ -4,10 +4,12 @@
 //! asked for. Palettes, interlacing and one-bit greys are unfolded by the decoder. Files are not trusted: sizes are checked
 //! before memory is asked for ([`MAX_PIXELS`]), and what is damaged is an error.
 
+mod levels;
 mod pyramid;
 mod read;
 mod resample;
 
+pub use levels::{Levels, levels};
 pub use pyramid::{Coverage, count_levels, halved, shrink};
 pub(crate) use read::Samples;
 pub use read::{MAGIC, read_bytes};
@@ -50,7 +52,7 @@ pub enum Space {
 #[non_exhaustive]
 pub enum PictureError {
     /// Of no kind that is read here.
-    #[error("not a PNG or JPEG image (it begins with {0:02x?})")]
+    #[error("not an image of a format that is read here (it begins with {0:02x?})")]
     Unknown(
         /// The first bytes.
         Vec<u8>,
@@ -62,6 +64,18 @@ pub enum PictureError {
         width: usize,
         /// Height in pixels.
         height: usize,
+    },
+    /// More memory than may be taken.
+    #[error("{width} x {height} pixels take {needed} bytes to decode, and {limit} may be taken")]
+    Memory {
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
+        /// Bytes that decoding takes.
+        needed: u64,
+        /// Bytes that may be taken.
+        limit: u64,
     },
     /// Damaged, cut short, or of a kind that the decoder does not know.
     #[error("{format}: {fault}")]

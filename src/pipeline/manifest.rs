@@ -4,6 +4,7 @@ use crate::grid::Provenance;
 use crate::grid::provenance::{Encoding, Reconstruction, SCHEMA, TexelRecord};
 use crate::plan::Plan;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 
 /// The manifest of an output folder. No clock, host or path: the same recipe gives the same bytes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -18,6 +19,12 @@ pub struct Manifest {
     pub hash: String,
     /// Tables in the order of the recipe.
     pub tables: Vec<TableRecord>,
+    /// Why they were asked for, where scenes asked: files, materials, reasons, and what was left out.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub scenes: Option<serde_json::Value>,
+    /// Files of an earlier bake that are still in the folder and belong to none of these tables.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub stale: Vec<String>,
 }
 
 /// One table.
@@ -57,7 +64,7 @@ pub struct FileRecord {
 }
 
 impl Manifest {
-    pub(super) fn new(plan: &Plan, tables: Vec<TableRecord>) -> Manifest {
+    pub(super) fn new(plan: &Plan, tables: Vec<TableRecord>, stale: Vec<String>) -> Manifest {
         let mut hasher = blake3::Hasher::new();
         for table in &plan.tables {
             hasher.update(table.identity.as_bytes());
@@ -68,7 +75,25 @@ impl Manifest {
             recipe: plan.name.clone(),
             hash: hasher.finalize().to_hex().to_string(),
             tables,
+            scenes: plan.reasons.clone(),
+            stale,
         }
+    }
+
+    /// Files of the manifest that lies in a folder, and those that it calls stale, which are still there and are not among `names`.
+    pub(super) fn stale(folder: &Path, names: &[String]) -> Vec<String> {
+        let old = std::fs::read(folder.join(super::MANIFEST)).ok();
+        let Some(old) = old.and_then(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok()) else {
+            return Vec::new();
+        };
+        let listed = old.tables.into_iter().flat_map(|t| t.files).map(|f| f.file);
+        let is_left = |name: &String| {
+            super::transaction::is_plain(name) && !names.contains(name) && folder.join(name).is_file()
+        };
+        let mut all: Vec<String> = listed.chain(old.stale).filter(is_left).collect();
+        all.sort();
+        all.dedup();
+        all
     }
 
     /// Sizes and hashes of the files as they are written: one may hold several tables.

@@ -5,6 +5,7 @@
 
 mod advice;
 pub mod audit;
+pub mod cost;
 mod event;
 mod fit;
 mod gather;
@@ -255,7 +256,8 @@ pub fn run(
     if !doubts.is_empty() {
         return Err(PipelineError::Doubt(doubts));
     }
-    let mut manifest = Manifest::new(plan, tables);
+    let stale = Manifest::stale(&settings.out, &plan.files());
+    let mut manifest = Manifest::new(plan, tables, stale);
     manifest.set_sizes(|name| files.staged(name));
     let written = files.commit(&manifest.to_bytes())?;
     let outcome = Outcome { manifest, written: written.written, unchanged: written.unchanged };

@@ -18,6 +18,8 @@ pub struct Plan {
     pub tables: Vec<PlannedTable>,
     /// Hash over its name and the identities of its tables, in hex.
     pub hash: String,
+    /// Why its tables were asked for, as the manifest tells it: what scenes need. Nothing of it is in a file of a table.
+    pub reasons: Option<Json>,
 }
 
 /// Why requests make no plan: every fault with its place, such as `table[0].outputs[1]`.
@@ -56,6 +58,26 @@ impl Plan {
         }
     }
 
+    /// A plan of no table: who asks needs none, and the manifest says so.
+    #[must_use]
+    pub fn nothing(name: &str) -> Plan {
+        Plan::new(name, Vec::new())
+    }
+
+    /// The plan with the reasons of its tables.
+    #[must_use]
+    pub fn because(mut self, reasons: Json) -> Plan {
+        self.reasons = Some(reasons);
+        self
+    }
+
+    /// The plan without the tables that `keep` is false for, in order. Their identities stay: they are those of the whole plan.
+    #[must_use]
+    pub fn only(mut self, keep: impl Fn(&PlannedTable) -> bool) -> Plan {
+        self.tables.retain(keep);
+        self
+    }
+
     /// One plan with the tables of several, in order.
     ///
     /// # Errors
@@ -79,7 +101,7 @@ impl Plan {
     fn new(name: &str, tables: Vec<PlannedTable>) -> Plan {
         let tables: Vec<PlannedTable> = tables.into_iter().map(|t| t.identified(name)).collect();
         let hash = identity::of_plan(name, &tables);
-        Plan { name: name.to_owned(), tables, hash }
+        Plan { name: name.to_owned(), tables, hash, reasons: None }
     }
 
     /// Name and tables under the keys of a recipe, with all defaults filled in; the same for requests that mean the same.

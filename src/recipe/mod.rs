@@ -89,6 +89,7 @@
 mod diagnostic;
 mod document;
 mod engine;
+mod engines;
 mod load;
 mod preset;
 mod read_axis;
@@ -98,7 +99,8 @@ mod span;
 mod write;
 
 pub use diagnostic::{Diagnostic, RecipeError};
-pub use engine::{ENGINES, Engine, EngineFile, Reader, Shipped, engine};
+pub use engine::{Engine, EngineFile, Reader, Roughness, Shipped, engine};
+pub use engines::ENGINES;
 pub use load::{LoadError, load};
 pub use preset::{PRESETS, Preset, preset};
 pub use write::text;

@@ -4,19 +4,21 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
+use super::embedded;
 use super::error::Fault;
 use super::json::Node;
-use super::material::{self, Animated, Counts, Material};
+use super::material::{self, Animated, Material, Tables};
 use super::uri::{Checked, check_uri};
 use super::{ExternalFile, Limits, Scene, Warning};
 use crate::math::shown::show;
 
 /// The scene in a parsed document. The file's name is left empty.
-pub(super) fn scene(tree: &Value, limits: &Limits) -> Result<Scene, Fault> {
+pub(super) fn scene(tree: &Value, bin: Option<&[u8]>, limits: &Limits) -> Result<Scene, Fault> {
     let root = Node::root(tree);
     check_versions(&root)?;
     let count = |key| root.get(key)?.map_or(Ok(0), |section| section.len());
-    let counts = Counts { materials: count("materials")?, textures: count("textures")? };
+    let textures = embedded::textures(&root)?;
+    let counts = Tables { materials: count("materials")?, textures: &textures };
     let animated = animated(&root, counts)?;
     let mut materials = Vec::with_capacity(counts.materials);
     if let Some(section) = root.get("materials")? {
@@ -26,7 +28,7 @@ pub(super) fn scene(tree: &Value, limits: &Limits) -> Result<Scene, Fault> {
         }
     }
     let usage = usage(&root, counts)?;
-    mark_used(&mut materials, usage.materials);
+    mark_used(&mut materials, &usage);
     check_nodes(&root, usage.meshes)?;
     let mut scene = Scene {
         file_name: String::new(),
@@ -34,13 +36,17 @@ pub(super) fn scene(tree: &Value, limits: &Limits) -> Result<Scene, Fault> {
         meshes: usage.meshes,
         primitives: usage.primitives,
         primitives_without_material: usage.without_material,
-        default_material_used: usage.without_material > 0,
+        default_material_used: usage.default_lit,
         extensions_used: names(&root, "extensionsUsed")?,
         extensions_required: names(&root, "extensionsRequired")?,
         external_files: external_files(&root, limits)?,
+        images: Vec::new(),
         warnings: Vec::new(),
     };
     scene.warnings = declaration_warnings(&scene);
+    let shaded = scene.materials.iter().filter(|m| m.used && m.lit);
+    let wanted: BTreeSet<usize> = shaded.flat_map(Material::sampled).filter_map(|s| s.image).collect();
+    scene.images = embedded::images(&root, &wanted, bin, limits)?;
     Ok(scene)
 }
 
@@ -64,7 +70,7 @@ fn names(root: &Node<'_>, key: &str) -> Result<Vec<String>, Fault> {
 }
 
 /// The material properties that animations change, by material: `KHR_animation_pointer`.
-fn animated(root: &Node<'_>, counts: Counts) -> Result<BTreeMap<usize, Animated>, Fault> {
+fn animated(root: &Node<'_>, counts: Tables<'_>) -> Result<BTreeMap<usize, Animated>, Fault> {
     let mut out: BTreeMap<usize, Animated> = BTreeMap::new();
     let Some(animations) = root.get("animations")? else { return Ok(out) };
     for animation in animations.items()? {
@@ -113,41 +119,64 @@ struct Usage {
     meshes: usize,
     primitives: usize,
     without_material: usize,
-    materials: BTreeSet<usize>,
+    /// Is glTF's default material on something that is lit?
+    default_lit: bool,
+    /// Materials, and whether something that is lit has them.
+    materials: BTreeMap<usize, bool>,
+}
+
+impl Usage {
+    fn add(&mut self, material: usize, lit: bool) {
+        *self.materials.entry(material).or_default() |= lit;
+    }
 }
 
 /// The materials that mesh primitives name, and those that a variant may put there instead.
-fn usage(root: &Node<'_>, counts: Counts) -> Result<Usage, Fault> {
+fn usage(root: &Node<'_>, counts: Tables<'_>) -> Result<Usage, Fault> {
     let mut usage = Usage::default();
     let Some(meshes) = root.get("meshes")? else { return Ok(usage) };
     for mesh in meshes.items()? {
         usage.meshes += 1;
         for primitive in mesh.need("primitives", "an array of primitives")?.items()? {
             usage.primitives += 1;
+            let lit = is_lit(&primitive)?;
             match primitive.get("material")? {
-                Some(material) => {
-                    usage.materials.insert(material.index("materials", counts.materials)?);
+                Some(material) => usage.add(material.index("materials", counts.materials)?, lit),
+                None => {
+                    usage.without_material += 1;
+                    usage.default_lit |= lit;
                 }
-                None => usage.without_material += 1,
             }
             let Some(extensions) = primitive.get("extensions")? else { continue };
             let Some(variants) = extensions.get("KHR_materials_variants")? else { continue };
             for mapping in variants.need("mappings", "an array of mappings")?.items()? {
                 let material = mapping.need("material", "the index of a material")?;
-                usage.materials.insert(material.index("materials", counts.materials)?);
+                usage.add(material.index("materials", counts.materials)?, lit);
             }
         }
     }
     Ok(usage)
 }
 
+/// Triangles get flat normals where they have none; points and lines then have no normal to be lit by (glTF 2.0 §3.9.1, Point and
+/// Line Materials).
+fn is_lit(primitive: &Node<'_>) -> Result<bool, Fault> {
+    /// The first mode of triangles; points and lines are below.
+    const TRIANGLES: u64 = 4;
+    let mode = primitive.get("mode")?.map_or(Ok(TRIANGLES), |mode| mode.whole())?;
+    let Some(attributes) = primitive.get("attributes")? else { return Ok(mode >= TRIANGLES) };
+    Ok(mode >= TRIANGLES || attributes.get("NORMAL")?.is_some())
+}
+
 /// Marks the materials in use, and those that stand in for them at a distance. Cycles end at what is marked.
-fn mark_used(materials: &mut [Material], used: BTreeSet<usize>) {
-    let mut open: Vec<usize> = used.into_iter().collect();
-    while let Some(index) = open.pop() {
-        if let Some(material) = materials.get_mut(index).filter(|material| !material.used) {
+fn mark_used(materials: &mut [Material], usage: &Usage) {
+    let mut open: Vec<(usize, bool)> = usage.materials.iter().map(|(index, lit)| (*index, *lit)).collect();
+    while let Some((index, lit)) = open.pop() {
+        let new = |material: &&mut Material| !material.used || (lit && !material.lit);
+        if let Some(material) = materials.get_mut(index).filter(new) {
             material.used = true;
-            open.extend_from_slice(&material.lods);
+            material.lit |= lit;
+            open.extend(material.lods.iter().map(|lod| (*lod, lit)));
         }
     }
 }
@@ -173,7 +202,7 @@ fn external_files(root: &Node<'_>, limits: &Limits) -> Result<Vec<ExternalFile>,
             let text = uri.text()?;
             match check_uri(text, limits.data_uri_bytes) {
                 Ok(Checked::Data { .. }) => {}
-                Ok(Checked::Inside(names)) => {
+                Ok(Checked::Inside(names) | Checked::Above(names)) => {
                     files.push(ExternalFile { at: uri.path(), path: names.join("/") })
                 }
                 Err(source) => return Err(Fault::Uri { at: uri.path(), uri: show(text), source }),

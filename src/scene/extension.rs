@@ -1,20 +1,48 @@
 //! The registry of glTF extensions: what each one asks of the baker. One line an extension.
 //!
-//! An extension that is missing here is reported as unknown, never ignored. When a table becomes available,
-//! its line changes from [`Asks::NotYet`] to [`Asks::Lobe`].
+//! An extension that is missing here is reported as unknown, never ignored. One that asks for tables has its line in a file of
+//! [`asks`](super::asks), with the numbers that it reads and what it makes of them. One that would need a table kind that does
+//! not exist names that kind ([`Asks::NotYet`]); once the kind is there, a test says so.
 //!
 //! Source: extensions/README.md of the glTF repository of the Khronos Group, and the open proposals there.
 
-use super::json::{Allowed, NOT_NEGATIVE, UNIT};
+use super::asks::{
+    Answer, Subject, anisotropy, base as layer, coats, diffuse, film, glass, scattering, sheen, spec_gloss,
+};
+use super::factor::Factor;
 
 /// Id of the table family of the GGX lobe.
 pub const GGX: &str = "ggx";
+/// Id of the family of coats of a fixed index.
+pub const COAT: &str = "coat";
+/// Id of the family of rough interfaces, seen from both sides.
+pub const GLASS: &str = "glass";
+/// Id of the family of Charlie's sheen.
+pub const SHEEN: &str = "sheen";
+/// Id of the family of layers of fibres.
+pub const FUZZ: &str = "fuzz";
+/// Id of the family of thin films.
+pub const FILM: &str = "film";
+/// Id of the family of anisotropic GGX lobes.
+pub const ANISOTROPIC: &str = "anisotropic";
+/// Id of the family of rough diffuse lobes.
+pub const ROUGH_DIFFUSE: &str = "rough-diffuse";
+/// Id of the family of phase functions.
+pub const PHASE: &str = "phase";
+/// Id of the family of diffusion profiles.
+pub const SUBSURFACE: &str = "subsurface";
+/// Id of the family of transformed cosines, for area lights.
+pub const AREA_LIGHT: &str = "area-light";
 
 /// An extension and what it asks for.
 #[derive(Debug)]
 pub struct Extension {
     /// Name as `extensionsUsed` spells it.
     pub name: &'static str,
+    /// When it does anything.
+    pub on: Switch,
+    /// The numbers that are read.
+    pub factors: &'static [Factor],
     /// What it asks for.
     pub asks: Asks,
 }
@@ -28,36 +56,23 @@ pub enum Asks {
     BaseLayer,
     /// Nothing, and takes away what the rest of the material asks for.
     Unlit,
+    /// Nothing that glTF's material model knows: another one takes its place.
+    Replaced(&'static str),
     /// A texture of its own for the roughness of the base layer.
     RoughnessTexture,
-    /// A lobe with its own roughness, from a table that can be baked.
-    Lobe(Lobe),
-    /// A table that cannot be baked yet.
+    /// What the function makes of a material, which is tables of these families, or nothing.
+    Layer(&'static [&'static str], fn(&Subject<'_>) -> Vec<Answer>),
+    /// Area lights: transformed cosines over the roughness of every lobe that they light.
+    AreaLights,
+    /// Something that cannot be told from the file, and why.
+    Unknown(&'static str),
+    /// A table of a kind that does not exist.
     NotYet {
         /// The table, in words.
         table: &'static str,
-        /// When it is asked for.
-        on: Switch,
+        /// Id that the kind would have.
+        kind: &'static str,
     },
-}
-
-/// A lobe with its own roughness.
-#[derive(Debug)]
-pub struct Lobe {
-    /// Id of the table family.
-    pub table: &'static str,
-    /// Name of the layer, for reports.
-    pub layer: &'static str,
-    /// When it is asked for.
-    pub on: Switch,
-    /// Key of its roughness factor, or of its glossiness factor.
-    pub factor: &'static str,
-    /// Default of that factor.
-    pub default: f64,
-    /// Key of the texture that the factor is multiplied by.
-    pub texture: &'static str,
-    /// True if the factor is glossiness: roughness = 1 − glossiness.
-    pub glossiness: bool,
 }
 
 /// The property that turns an extension off when it is zero. Textures only multiply it, so zero stays zero.
@@ -65,10 +80,8 @@ pub struct Lobe {
 pub enum Switch {
     /// On whenever the extension is there.
     Always,
-    /// A number whose default is 0.
-    Factor(&'static str, &'static Allowed),
-    /// An RGB colour whose default is black.
-    Colour(&'static str, &'static Allowed),
+    /// One of its factors, off at 0 or black.
+    Factor(&'static str),
 }
 
 /// The entry of an extension.
@@ -77,45 +90,21 @@ pub fn find(name: &str) -> Option<&'static Extension> {
     EXTENSIONS.iter().find(|extension| extension.name == name)
 }
 
-const fn none(name: &'static str, why: &'static str) -> Extension {
-    Extension { name, asks: Asks::Nothing(why) }
+const fn line(name: &'static str, asks: Asks) -> Extension {
+    Extension { name, on: Switch::Always, factors: &[], asks }
 }
 
-const fn base(name: &'static str) -> Extension {
-    Extension { name, asks: Asks::BaseLayer }
+const fn none(name: &'static str, why: &'static str) -> Extension {
+    line(name, Asks::Nothing(why))
 }
 
 const fn packed(name: &'static str) -> Extension {
-    Extension { name, asks: Asks::RoughnessTexture }
+    line(name, Asks::RoughnessTexture)
 }
 
-const fn later(name: &'static str, on: Switch, table: &'static str) -> Extension {
-    Extension { name, asks: Asks::NotYet { table, on } }
+const fn replaced(name: &'static str, by: &'static str) -> Extension {
+    line(name, Asks::Replaced(by))
 }
-
-const fn weight(key: &'static str) -> Switch {
-    Switch::Factor(key, &UNIT)
-}
-
-const CLEARCOAT: Lobe = Lobe {
-    table: GGX,
-    layer: "clearcoat",
-    on: weight("clearcoatFactor"),
-    factor: "clearcoatRoughnessFactor",
-    default: 0.0,
-    texture: "clearcoatRoughnessTexture",
-    glossiness: false,
-};
-
-const SPECULAR_GLOSSINESS: Lobe = Lobe {
-    table: GGX,
-    layer: "specular-glossiness layer",
-    on: Switch::Always,
-    factor: "glossinessFactor",
-    default: 1.0,
-    texture: "specularGlossinessTexture",
-    glossiness: true,
-};
 
 const GEOMETRY: &str = "geometry";
 const TEXTURES: &str = "texture transport";
@@ -125,14 +114,14 @@ const BEHAVIOUR: &str = "behaviour of nodes";
 
 /// All known extensions, in alphabetical order.
 pub static EXTENSIONS: &[Extension] = &[
-    base("ADOBE_materials_clearcoat_specular"),
+    line("ADOBE_materials_clearcoat_specular", Asks::BaseLayer),
     none("ADOBE_materials_clearcoat_tint", "tints what lies below the coat"),
-    later("ADOBE_materials_thin_transparency", Switch::Always, "GGX transmission albedo (thin walls)"),
+    glass::THIN,
     none("AGI_articulations", GEOMETRY),
     none("AGI_stk_metadata", METADATA),
     none("CESIUM_primitive_outline", GEOMETRY),
     none("EXT_instance_features", METADATA),
-    later("EXT_lights_area", Switch::Always, "linearly transformed cosines (area lights)"),
+    line("EXT_lights_area", Asks::AreaLights),
     none("EXT_lights_ies", LIGHTS),
     none("EXT_lights_image_based", LIGHTS),
     none("EXT_mesh_features", METADATA),
@@ -149,47 +138,39 @@ pub static EXTENSIONS: &[Extension] = &[
     none("KHR_audio_emitter", "sound"),
     none("KHR_draco_mesh_compression", GEOMETRY),
     none("KHR_gaussian_splatting", GEOMETRY),
-    later("KHR_interactivity", Switch::Always, "unknown: a graph may change any factor while the scene runs"),
+    line("KHR_interactivity", Asks::Unknown("a graph may change any factor while the scene runs")),
     none("KHR_lights_punctual", LIGHTS),
-    later("KHR_materials_anisotropy", weight("anisotropyStrength"), "anisotropic GGX albedo"),
-    Extension { name: "KHR_materials_clearcoat", asks: Asks::Lobe(CLEARCOAT) },
-    later("KHR_materials_coat", weight("coatFactor"), "GGX coat with darkening"),
-    later("KHR_materials_diffuse_roughness", weight("diffuseRoughnessFactor"), "rough diffuse albedo"),
-    later(
-        "KHR_materials_diffuse_transmission",
-        weight("diffuseTransmissionFactor"),
-        "diffuse transmission albedo",
-    ),
-    later(
-        "KHR_materials_dispersion",
-        Switch::Factor("dispersion", &NOT_NEGATIVE),
-        "GGX transmission albedo (per wavelength)",
-    ),
+    anisotropy::LAYER,
+    coats::CLEARCOAT,
+    coats::COAT_LAYER,
+    diffuse::ROUGH,
+    diffuse::TRANSMITTED,
+    glass::DISPERSION,
     none("KHR_materials_emissive_strength", "emission"),
-    later("KHR_materials_fuzz", weight("fuzzFactor"), "fuzz albedo (linearly transformed cosines)"),
-    base("KHR_materials_ior"),
-    later("KHR_materials_iridescence", weight("iridescenceFactor"), "thin-film Fresnel"),
-    later("KHR_materials_openpbr", Switch::Always, "OpenPBR layers"),
-    Extension { name: "KHR_materials_pbrSpecularGlossiness", asks: Asks::Lobe(SPECULAR_GLOSSINESS) },
-    later("KHR_materials_sheen", Switch::Colour("sheenColorFactor", &UNIT), "Charlie sheen albedo"),
-    base("KHR_materials_specular"),
-    later("KHR_materials_sss", Switch::Always, "subsurface scattering"),
-    later("KHR_materials_subsurface", Switch::Always, "subsurface scattering"),
-    later("KHR_materials_transmission", weight("transmissionFactor"), "GGX transmission albedo"),
-    Extension { name: "KHR_materials_unlit", asks: Asks::Unlit },
-    none("KHR_materials_variants", "a choice of materials; all of them count as used"),
-    later(
-        "KHR_materials_volume",
-        Switch::Factor("thicknessFactor", &NOT_NEGATIVE),
-        "GGX transmission albedo (below a surface)",
+    sheen::FIBRES,
+    layer::INDEX,
+    film::LAYER,
+    line(
+        "KHR_materials_openpbr",
+        Asks::NotYet { table: "the layers of OpenPBR as one stack", kind: "openpbr" },
     ),
-    later("KHR_materials_volume_scatter", Switch::Always, "volume scattering"),
+    spec_gloss::LAYER,
+    sheen::LAYER,
+    layer::SPECULAR,
+    scattering::EARLIER,
+    scattering::LAYER,
+    glass::TRANSMISSION,
+    line("KHR_materials_unlit", Asks::Unlit),
+    none("KHR_materials_variants", "a choice of materials; all of them count as used"),
+    glass::VOLUME,
+    scattering::VOLUME,
     none("KHR_mesh_quantization", GEOMETRY),
     none("KHR_meshopt_compression", GEOMETRY),
     none("KHR_node_hoverability", BEHAVIOUR),
     none("KHR_node_selectability", BEHAVIOUR),
     none("KHR_node_visibility", BEHAVIOUR),
     none("KHR_physics_rigid_bodies", BEHAVIOUR),
+    replaced("KHR_techniques_webgl", "shaders of the file's own"),
     none("KHR_texture_basisu", TEXTURES),
     none("KHR_texture_transform", TEXTURES),
     none("KHR_xmp", METADATA),
@@ -198,6 +179,10 @@ pub static EXTENSIONS: &[Extension] = &[
     packed("MSFT_packing_normalRoughnessMetallic"),
     packed("MSFT_packing_occlusionRoughnessMetallic"),
     none("MSFT_texture_dds", TEXTURES),
-    later("NV_materials_mdl", Switch::Always, "unknown: the material is an MDL program"),
+    replaced("NV_materials_mdl", "an MDL program"),
+    replaced("VRM", "what its materialProperties say, toon shading as a rule"),
+    replaced("VRMC_materials_mtoon", "toon shading"),
+    none("VRMC_node_constraint", BEHAVIOUR),
     none("VRMC_springBone", BEHAVIOUR),
+    none("VRMC_vrm", METADATA),
 ];

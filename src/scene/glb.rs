@@ -1,4 +1,4 @@
-//! The GLB container: finds the JSON chunk and looks at nothing else.
+//! The GLB container: finds its chunks.
 //!
 //! The chunks are split by `gltf::binary::Glb::from_slice`. Two of its habits are guarded against here, and
 //! tested: it subtracts 12 from the header's length before it looks at it (a panic with overflow checks), and
@@ -21,8 +21,11 @@ pub(super) const MAGIC: &[u8] = b"glTF";
 /// Header (12 bytes) and header of the first chunk (8 bytes).
 const SMALLEST: usize = 20;
 
-/// The JSON chunk of a container. Bytes after the declared length are a warning, missing ones a fault.
-pub(super) fn json_chunk<'a>(bytes: &'a [u8], warnings: &mut Vec<Warning>) -> Result<Cow<'a, [u8]>, Fault> {
+/// JSON and BIN of a container.
+type Chunks<'a> = (Cow<'a, [u8]>, Option<Cow<'a, [u8]>>);
+
+/// The chunks of a container. Bytes after the declared length are a warning, missing ones a fault.
+pub(super) fn chunks<'a>(bytes: &'a [u8], warnings: &mut Vec<Warning>) -> Result<Chunks<'a>, Fault> {
     let word = |at: usize| bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
     let (Some(version), Some(declared), true) = (word(4), word(8), bytes.len() >= SMALLEST) else {
         return Err(Fault::GlbShort { got: bytes.len() });
@@ -39,7 +42,7 @@ pub(super) fn json_chunk<'a>(bytes: &'a [u8], warnings: &mut Vec<Warning>) -> Re
     }
     let first_is_json = container.get(16..SMALLEST) == Some(b"JSON".as_slice());
     let glb = Glb::from_slice(container).map_err(|error| fault(&error, first_is_json))?;
-    Ok(glb.json)
+    Ok((glb.json, glb.bin))
 }
 
 /// The crate's error in our words, with its numbers.

@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::error::Fault;
+use super::factor::Factor;
 use crate::math::shown::show;
 
 /// The step from a value to one of its parts.
@@ -63,6 +64,8 @@ pub struct Allowed {
 pub const UNIT: Allowed = Allowed { lo: 0.0, hi: 1.0, also: None, text: "[0, 1]" };
 /// Thickness, dispersion, colours that may exceed 1.
 pub const NOT_NEGATIVE: Allowed = Allowed { lo: 0.0, hi: f64::MAX, also: None, text: "[0, ∞)" };
+/// Asymmetry of a phase function: the open interval (-1, 1), cut where peaks are no wider than a degree.
+pub const ASYMMETRY: Allowed = Allowed { lo: -1.0, hi: 1.0, also: None, text: "[-1, 1]" };
 /// `KHR_materials_ior`: at least 1, or 0 for "no dielectric Fresnel, F0 = 1".
 pub const IOR: Allowed = Allowed { lo: 1.0, hi: f64::MAX, also: Some(0.0), text: "0 or [1, ∞)" };
 
@@ -161,6 +164,11 @@ impl<'a> Node<'a> {
         }
     }
 
+    /// This value as a whole number.
+    pub(super) fn whole(&self) -> Result<u64, Fault> {
+        self.value.as_u64().ok_or_else(|| self.wrong("an integer of at least 0"))
+    }
+
     /// A number member in a range, or its default.
     pub(super) fn factor(&self, key: &str, default: f64, allowed: &Allowed) -> Result<f64, Fault> {
         match self.get_here(key)? {
@@ -169,18 +177,20 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// The largest channel of an RGB member, 0 if it is missing.
-    pub(super) fn brightest(&self, key: &str, allowed: &Allowed) -> Result<f64, Fault> {
-        let Some(value) = self.get_here(key)? else { return Ok(0.0) };
-        let colour = Node { value, parent: Some((self, Step::Key(key))) };
-        if colour.len()? != 3 {
-            return Err(colour.wrong("an array of 3 numbers"));
+    /// The least and the largest of R, G and B of a colour member, or its default.
+    pub(super) fn channels(&self, factor: &Factor) -> Result<[f64; 2], Fault> {
+        let Some(value) = self.get_here(factor.key)? else { return Ok([factor.default; 2]) };
+        let colour = Node { value, parent: Some((self, Step::Key(factor.key))) };
+        if colour.len()? != factor.channels {
+            let four = factor.channels == 4;
+            return Err(colour.wrong(if four { "an array of 4 numbers" } else { "an array of 3 numbers" }));
         }
-        let mut most = 0.0_f64;
-        for channel in colour.items()? {
-            most = most.max(channel.number(allowed)?);
+        let mut range = [f64::INFINITY, 0.0_f64];
+        for channel in colour.items()?.take(3) {
+            let v = channel.number(factor.allowed)?;
+            range = [range[0].min(v), range[1].max(v)];
         }
-        Ok(most)
+        Ok(range)
     }
 
     /// As [`Node::get`], for keys that live shorter than the document.

@@ -1,67 +1,14 @@
-//! A material: the few factors that decide which tables it asks for, checked one by one.
+//! A material: the numbers that decide which tables it asks for, checked one by one.
+//!
+//! What is read of an extension is what its line in the [registry](super::EXTENSIONS) declares.
 
 use std::collections::BTreeSet;
-use std::fmt;
 
 use super::error::Fault;
-use super::extension::{self, Asks, Lobe, Switch};
-use super::json::{IOR, Node, UNIT};
-
-/// What lets a factor take more than one value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Spread {
-    /// Nothing: it is the same everywhere and always.
-    Constant,
-    /// A texture that multiplies the factor by something in [0, 1].
-    Texture,
-    /// An animation (`KHR_animation_pointer`).
-    Animation,
-}
-
-/// The values that a factor can take over a surface and over time, in [0, 1].
-///
-/// Accuracy: `serde_json` reads a decimal to within 1 ulp, so 0.029999999329447746 may end in 3.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Interval {
-    /// Smallest value.
-    pub lo: f64,
-    /// Largest value.
-    pub hi: f64,
-    /// Why they differ.
-    pub spread: Spread,
-}
-
-impl Interval {
-    /// One value, everywhere and always.
-    #[must_use]
-    pub fn constant(x: f64) -> Self {
-        Self { lo: x, hi: x, spread: Spread::Constant }
-    }
-
-    /// A factor in [0, 1]: a texture spreads it over [0, factor], an animation over [0, 1].
-    fn new(factor: f64, textured: bool, animated: bool) -> Self {
-        match (animated, textured) {
-            (true, _) => Self { lo: 0.0, hi: 1.0, spread: Spread::Animation },
-            (false, true) => Self { lo: 0.0, hi: factor, spread: Spread::Texture },
-            (false, false) => Self::constant(factor),
-        }
-    }
-
-    /// 1 − x: from glossiness to roughness.
-    fn flipped(self) -> Self {
-        Self { lo: 1.0 - self.hi, hi: 1.0 - self.lo, spread: self.spread }
-    }
-}
-
-impl fmt::Display for Interval {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.spread {
-            Spread::Constant => write!(f, "{}", self.lo),
-            Spread::Texture => write!(f, "[{}, {}] (texture)", self.lo, self.hi),
-            Spread::Animation => write!(f, "[{}, {}] (animation)", self.lo, self.hi),
-        }
-    }
-}
+use super::extension::{self, Asks, Switch};
+use super::factor::{Channel, Factor, Interval, Property, Sampled};
+use super::image::Look;
+use super::json::{Allowed, Node, UNIT};
 
 /// Whether an extension of a material does anything there, with the factor that says so.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,10 +24,8 @@ pub enum State {
 pub struct MaterialExtension {
     /// Its name, as in the file.
     pub name: String,
-    /// Whether it does anything.
-    pub state: State,
-    /// Roughness of its own lobe, if it is a known one that has a lobe.
-    pub roughness: Option<Interval>,
+    /// The numbers that its line in the registry declares; empty if it has none.
+    pub properties: Vec<Property>,
 }
 
 /// A material of the file. Every factor was checked against its range.
@@ -92,51 +37,120 @@ pub struct Material {
     pub name: Option<String>,
     /// True if a mesh primitive uses it, by itself, by a variant or as a level of detail.
     pub used: bool,
+    /// True if something that has normals uses it: points and lines without them are unlit (glTF 2.0 §3.9.1).
+    pub lit: bool,
     /// True if it says `pbrMetallicRoughness`. Without that all factors have their defaults.
     pub metallic_roughness: bool,
-    /// Roughness of the base layer, perceptual (alpha = roughness²).
-    pub roughness: Interval,
-    /// Metalness of the base layer.
-    pub metallic: Interval,
-    /// `specularFactor` of `KHR_materials_specular`: weight of the dielectric reflection.
-    pub specular: Interval,
-    /// Index of refraction of `KHR_materials_ior`; 0 means F0 = 1.
-    pub ior: f64,
+    /// The numbers of `pbrMetallicRoughness`, by [`CORE`].
+    pub core: Vec<Property>,
     /// Its extensions, in the file's order.
     pub extensions: Vec<MaterialExtension>,
     /// Materials that stand in for it at a distance (`MSFT_lod`).
     pub lods: Vec<usize>,
 }
 
-impl Material {
-    /// True if the material is a constant colour (`KHR_materials_unlit`).
+/// The base layer: glTF 2.0 §3.9.2. The texture has metalness in blue and roughness in green.
+pub static CORE: &[Factor] = &[
+    Factor::textured("roughnessFactor", 1.0, &UNIT, (CORE_TEXTURE, Channel::G)),
+    Factor::textured("metallicFactor", 1.0, &UNIT, (CORE_TEXTURE, Channel::B)),
+    Factor::colour("baseColorFactor", 1.0, &UNIT, "baseColorTexture", 4),
+];
+
+const CORE_TEXTURE: &str = "metallicRoughnessTexture";
+
+/// Textures of `MSFT_packing_*` that hold roughness and metalness, with their channels.
+const PACKED: [(&str, [Channel; 2]); 3] = [
+    ("occlusionRoughnessMetallicTexture", [Channel::G, Channel::B]),
+    ("roughnessMetallicOcclusionTexture", [Channel::R, Channel::G]),
+    ("normalRoughnessMetallicTexture", [Channel::B, Channel::A]),
+];
+
+impl MaterialExtension {
+    /// Whether it does anything, as far as its textures are known.
     #[must_use]
-    pub fn unlit(&self) -> bool {
-        self.extensions.iter().any(|e| matches!(extension::find(&e.name).map(|x| &x.asks), Some(Asks::Unlit)))
+    pub fn state(&self, look: &Look) -> State {
+        let on = extension::find(&self.name).map_or(&Switch::Always, |x| &x.on);
+        let Switch::Factor(key) = on else { return State::On("present".to_owned()) };
+        let Some(property) = self.properties.iter().find(|p| p.key == *key) else {
+            return State::On("present".to_owned());
+        };
+        let [on, zero] = if property.colour { ["is not black", "is black"] } else { ["> 0", "= 0"] };
+        if property.animated {
+            return State::On(format!("{key} is animated"));
+        }
+        if property.factor[1] <= 0.0 {
+            return State::Off(format!("{key} {zero}"));
+        }
+        if property.range(look).hi <= 0.0 {
+            return State::Off(format!("the texture of {key} is black"));
+        }
+        if property.colour {
+            State::On(format!("{key} {on}"))
+        } else {
+            State::On(format!("{key} = {}", property.factor[1]))
+        }
+    }
+}
+
+impl Material {
+    /// An extension of this name.
+    #[must_use]
+    pub fn extension(&self, name: &str) -> Option<&MaterialExtension> {
+        self.extensions.iter().find(|e| e.name == name)
     }
 
-    /// True if the base layer reflects nothing: no metal, and a dielectric with `specularFactor` 0.
+    /// A number of an extension, or of the base layer if `extension` is empty; the default where the extension is not there.
     #[must_use]
-    pub fn base_is_black(&self) -> bool {
-        self.metallic.hi == 0.0 && self.specular.hi == 0.0
+    pub fn range(&self, extension: &str, key: &str, look: &Look) -> Interval {
+        let properties = match extension {
+            "" => Some(&self.core),
+            name => self.extension(name).map(|e| &e.properties),
+        };
+        let found = properties.and_then(|all| all.iter().find(|p| p.key == key));
+        let factors = if extension.is_empty() {
+            CORE
+        } else {
+            extension::find(extension).map_or(&[][..], |x| x.factors)
+        };
+        let default = || factors.iter().find(|f| f.key == key).map_or(0.0, |f| f.default);
+        found.map_or_else(|| Interval::constant(default()), |p| p.range(look))
+    }
+
+    /// Does an extension do anything here?
+    #[must_use]
+    pub fn has(&self, extension: &str, look: &Look) -> bool {
+        self.extension(extension).is_some_and(|e| matches!(e.state(look), State::On(_)))
+    }
+
+    /// Does any of its extensions ask for this?
+    pub(super) fn asks(&self, what: impl Fn(&Asks) -> bool) -> bool {
+        self.extensions.iter().any(|e| extension::find(&e.name).is_some_and(|x| what(&x.asks)))
+    }
+
+    /// The textures that multiply its numbers.
+    pub(super) fn sampled(&self) -> impl Iterator<Item = Sampled> + '_ {
+        let all = self.core.iter().chain(self.extensions.iter().flat_map(|e| &e.properties));
+        all.filter(|p| !p.colour && !p.animated && p.factor[1] != 0.0).filter_map(|p| p.texture)
     }
 }
 
 /// The properties of one material that an animation changes, as JSON pointers below the material.
 pub(super) type Animated = BTreeSet<String>;
 
-/// How many things an index of a material may point at.
+/// What an index of a material may point at.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Counts {
+pub(super) struct Tables<'a> {
+    /// Number of materials.
     pub(super) materials: usize,
-    pub(super) textures: usize,
+    /// The image of each texture.
+    pub(super) textures: &'a [Option<usize>],
 }
 
-/// Reads `materials[index]`. `used` is left false.
+/// Reads `materials[index]`. It is not marked as used.
 pub(super) fn read(
     node: &Node<'_>,
     index: usize,
-    counts: Counts,
+    tables: Tables<'_>,
     animated: &Animated,
 ) -> Result<Material, Fault> {
     let name = node.get("name")?.map(|name| name.text().map(str::to_owned)).transpose()?;
@@ -144,118 +158,97 @@ pub(super) fn read(
         index,
         name,
         used: false,
+        lit: false,
         metallic_roughness: false,
-        roughness: Interval::new(1.0, false, false),
-        metallic: Interval::new(1.0, false, false),
-        specular: Interval::new(1.0, false, false),
-        ior: 1.5,
+        core: Vec::new(),
         extensions: Vec::new(),
         lods: Vec::new(),
     };
     // The two extensions that pack roughness into another texture replace the core texture.
-    let mut packed = false;
+    let mut packed = None;
     if let Some(extensions) = node.get("extensions")? {
         for (name, extension) in extensions.members()? {
-            packed |= matches!(extension::find(name).map(|x| &x.asks), Some(Asks::RoughnessTexture));
-            material.extensions.push(read_extension(name, &extension, counts, animated)?);
-            read_base_extension(name, &extension, counts, animated, &mut material)?;
+            let known = extension::find(name);
+            if matches!(known.map(|x| &x.asks), Some(Asks::RoughnessTexture)) {
+                packed = Some(read_packed(&extension, tables)?);
+            }
+            let factors = known.map_or(&[][..], |x| x.factors);
+            let prefix = format!("extensions/{name}");
+            let properties = read_factors(&extension, factors, &prefix, tables, animated)?;
+            material.extensions.push(MaterialExtension { name: name.to_owned(), properties });
+            if name == "MSFT_lod" {
+                for id in extension.need("ids", "an array of material indices")?.items()? {
+                    material.lods.push(id.index("materials", tables.materials)?);
+                }
+            }
         }
     }
-    read_core(node, counts, animated, packed, &mut material)?;
+    material.core = match node.get("pbrMetallicRoughness")? {
+        Some(pbr) => {
+            material.metallic_roughness = true;
+            read_factors(&pbr, CORE, "pbrMetallicRoughness", tables, animated)?
+        }
+        None => CORE.iter().map(default).collect(),
+    };
+    for (property, texture) in material.core.iter_mut().zip(packed.into_iter().flatten()) {
+        property.texture = Some(texture);
+    }
     Ok(material)
 }
 
-/// The base layer: glTF 2.0 §3.9.2, defaults metallic 1 and roughness 1.
-fn read_core(
-    node: &Node<'_>,
-    counts: Counts,
-    animated: &Animated,
-    packed: bool,
-    material: &mut Material,
-) -> Result<(), Fault> {
-    let Some(pbr) = node.get("pbrMetallicRoughness")? else {
-        material.roughness = Interval::new(1.0, packed, false);
-        material.metallic = Interval::new(1.0, packed, false);
-        return Ok(());
-    };
-    material.metallic_roughness = true;
-    let textured = has_texture(&pbr, "metallicRoughnessTexture", counts)? || packed;
-    let moves = |key: &str| animated.contains(&format!("pbrMetallicRoughness/{key}"));
-    let roughness = pbr.factor("roughnessFactor", 1.0, &UNIT)?;
-    material.roughness = Interval::new(roughness, textured, moves("roughnessFactor"));
-    let metallic = pbr.factor("metallicFactor", 1.0, &UNIT)?;
-    material.metallic = Interval::new(metallic, textured, moves("metallicFactor"));
-    Ok(())
-}
-
-/// The factors of extensions that change the base layer, and the list of `MSFT_lod`.
-fn read_base_extension(
-    name: &str,
-    node: &Node<'_>,
-    counts: Counts,
-    animated: &Animated,
-    material: &mut Material,
-) -> Result<(), Fault> {
-    match name {
-        "KHR_materials_ior" => material.ior = node.factor("ior", 1.5, &IOR)?,
-        "KHR_materials_specular" => {
-            let factor = node.factor("specularFactor", 1.0, &UNIT)?;
-            let moves = animated.contains("extensions/KHR_materials_specular/specularFactor");
-            material.specular = Interval::new(factor, has_texture(node, "specularTexture", counts)?, moves);
-        }
-        "MSFT_lod" => {
-            for id in node.need("ids", "an array of material indices")?.items()? {
-                material.lods.push(id.index("materials", counts.materials)?);
-            }
-        }
-        _ => {}
+fn default(factor: &Factor) -> Property {
+    Property {
+        key: factor.key,
+        factor: [factor.default; 2],
+        texture: None,
+        animated: false,
+        allowed: reach(factor.allowed),
+        colour: factor.channels > 1,
     }
-    Ok(())
 }
 
-/// Any extension: its switch and the roughness of its lobe, by the registry.
-fn read_extension(
-    name: &str,
-    node: &Node<'_>,
-    counts: Counts,
-    animated: &Animated,
-) -> Result<MaterialExtension, Fault> {
-    let moves = |key: &str| animated.contains(&format!("extensions/{name}/{key}"));
-    let (state, roughness) = match extension::find(name).map(|x| &x.asks) {
-        Some(Asks::Lobe(lobe)) => {
-            (read_switch(&lobe.on, node, &moves)?, Some(read_lobe(lobe, node, counts, moves(lobe.factor))?))
+/// What an animation can make of a number: all that is allowed, where that is bounded.
+fn reach(allowed: &Allowed) -> [f64; 2] {
+    [allowed.lo, allowed.hi]
+}
+
+/// The textures of roughness and metalness of an `MSFT_packing_*` extension.
+fn read_packed(node: &Node<'_>, tables: Tables<'_>) -> Result<[Sampled; 2], Fault> {
+    for (key, channels) in PACKED {
+        if let Some(image) = texture(node, key, tables)? {
+            return Ok(channels.map(|channel| Sampled { image, channel }));
         }
-        Some(Asks::NotYet { on, .. }) => (read_switch(on, node, &moves)?, None),
-        _ => (State::On("present".to_owned()), None),
-    };
-    Ok(MaterialExtension { name: name.to_owned(), state, roughness })
+    }
+    Ok([Channel::G, Channel::B].map(|channel| Sampled { image: None, channel }))
 }
 
-fn read_lobe(lobe: &Lobe, node: &Node<'_>, counts: Counts, moves: bool) -> Result<Interval, Fault> {
-    let factor = node.factor(lobe.factor, lobe.default, &UNIT)?;
-    let interval = Interval::new(factor, has_texture(node, lobe.texture, counts)?, moves);
-    Ok(if lobe.glossiness { interval.flipped() } else { interval })
+fn read_factors(
+    node: &Node<'_>,
+    factors: &'static [Factor],
+    prefix: &str,
+    tables: Tables<'_>,
+    animated: &Animated,
+) -> Result<Vec<Property>, Fault> {
+    let mut all = Vec::with_capacity(factors.len());
+    for factor in factors {
+        let value = if factor.channels > 1 {
+            node.channels(factor)?
+        } else {
+            [node.factor(factor.key, factor.default, factor.allowed)?; 2]
+        };
+        let mut sampled = None;
+        if let Some((key, channel)) = factor.texture {
+            sampled = texture(node, key, tables)?.map(|image| Sampled { image, channel });
+        }
+        let animated = animated.contains(&format!("{prefix}/{}", factor.key));
+        all.push(Property { factor: value, texture: sampled, animated, ..default(factor) });
+    }
+    Ok(all)
 }
 
-fn read_switch(switch: &Switch, node: &Node<'_>, moves: &dyn Fn(&str) -> bool) -> Result<State, Fault> {
-    let (key, strength) = match switch {
-        Switch::Always => return Ok(State::On("present".to_owned())),
-        Switch::Factor(key, allowed) => (key, node.factor(key, 0.0, allowed)?),
-        Switch::Colour(key, allowed) => (key, node.brightest(key, allowed)?),
-    };
-    let colour = matches!(switch, Switch::Colour(..));
-    Ok(match (strength > 0.0, moves(key)) {
-        (_, true) => State::On(format!("{key} is animated")),
-        (true, false) if colour => State::On(format!("{key} is not black")),
-        (true, false) => State::On(format!("{key} = {strength}")),
-        (false, false) if colour => State::Off(format!("{key} is black")),
-        (false, false) => State::Off(format!("{key} = 0")),
-    })
-}
-
-/// True if a `textureInfo` is there. Its index is checked; the texture itself is not looked at.
-fn has_texture(node: &Node<'_>, key: &str, counts: Counts) -> Result<bool, Fault> {
-    let Some(info) = node.get(key)? else { return Ok(false) };
-    info.need("index", "the index of a texture")?.index("textures", counts.textures)?;
-    Ok(true)
+/// The image of a `textureInfo`, if that is there. Its index is checked.
+fn texture(node: &Node<'_>, key: &str, tables: Tables<'_>) -> Result<Option<Option<usize>>, Fault> {
+    let Some(info) = node.get(key)? else { return Ok(None) };
+    let index = info.need("index", "the index of a texture")?.index("textures", tables.textures.len())?;
+    Ok(Some(tables.textures.get(index).copied().flatten()))
 }

@@ -1,8 +1,9 @@
 //! What a glTF scene needs: its materials, read without geometry and without trust.
 //!
 //! [`read`] takes a `.glb` or `.gltf` file and keeps the factors that decide which tables its materials ask for.
-//! [`analyse`] turns them into [`Needs`]: the tables to bake, who asks and why, and all that was left out.
-//! Geometry, buffers and images are never loaded, and no URI of the file is opened.
+//! [`analyse`] and [`analyse_with`] turn them into [`Needs`]: the tables to bake, who asks and why, and all that was left out.
+//! Geometry is never loaded and no URI of the file is opened here: [`Scene::images`] says where the images lie whose levels
+//! matter, and whoever reads them tells what is in them by a [`Look`].
 //!
 //! # Trust
 //! The file may be hostile. Sizes are bounded before anything is allocated ([`Limits`]); JSON nests at most
@@ -16,14 +17,19 @@
 //!
 //! Source: [glTF 2.0](https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html).
 
+mod asks;
 mod document;
+mod embedded;
 mod error;
 mod extension;
+mod factor;
 mod glb;
+mod image;
 mod json;
 mod material;
 mod needs;
 mod parse;
+mod reader;
 mod uri;
 
 use crate::math::shown::show;
@@ -32,12 +38,22 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+pub use asks::{Answer, Subject};
 pub use error::{Fault, SceneError};
-pub use extension::{Asks, EXTENSIONS, Extension, GGX, Lobe, Switch, find as find_extension};
-pub use json::{Allowed, IOR, NOT_NEGATIVE, UNIT};
-pub use material::{Interval, Material, MaterialExtension, Spread, State};
-pub use needs::{AskedBy, LeftOut, LeftOutKind, MaterialRef, Need, Needs, analyse};
-pub use uri::{Checked, LONGEST_URI, Resolved, UriError, check_uri, resolve_uri};
+pub use extension::{
+    ANISOTROPIC, AREA_LIGHT, Asks, COAT, EXTENSIONS, Extension, FILM, FUZZ, GGX, GLASS, PHASE, ROUGH_DIFFUSE,
+    SHEEN, SUBSURFACE, Switch, find as find_extension,
+};
+pub use factor::{Channel, Factor, Interval, Property, Sampled, Spread};
+pub use image::{Image, Look, Source};
+pub use json::{ASYMMETRY, Allowed, IOR, NOT_NEGATIVE, UNIT};
+pub use material::{CORE, Material, MaterialExtension, State};
+pub use needs::{
+    AskedBy, Id, Joined, LeftOut, LeftOutKind, MOST_VALUES, MaterialRef, Need, Needs, Range, analyse,
+    analyse_with,
+};
+pub use reader::Reader;
+pub use uri::{Checked, LONGEST_URI, Resolved, UriError, check_uri, resolve, resolve_uri};
 
 /// How much of a file is looked at before it is refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -122,7 +138,7 @@ pub struct ExternalFile {
 }
 
 /// A scene, as far as tables are concerned.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug)]
 pub struct Scene {
     /// Name of the file, without its folder.
     pub file_name: String,
@@ -142,6 +158,8 @@ pub struct Scene {
     pub extensions_required: Vec<String>,
     /// Files that buffers and images name.
     pub external_files: Vec<ExternalFile>,
+    /// The images that numbers of used materials are multiplied by.
+    pub images: Vec<Image>,
     /// What is odd about the file.
     pub warnings: Vec<Warning>,
 }
@@ -151,10 +169,19 @@ pub struct Scene {
 /// # Errors
 /// [`Fault::Io`] if the file cannot be read; any other [`Fault`] if it is refused.
 pub fn read(path: &Path, limits: &Limits) -> Result<Scene, SceneError> {
+    read_hashed(path, limits).map(|(scene, _)| scene)
+}
+
+/// As [`read`], with blake3 of the file in hex.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_hashed(path: &Path, limits: &Limits) -> Result<(Scene, String), SceneError> {
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
     let bytes =
         read_bytes(path, limits.file_bytes).map_err(|fault| SceneError { file: name.to_string(), fault })?;
-    read_slice(&bytes, &name, limits)
+    let scene = read_slice(&bytes, &name, limits)?;
+    Ok((scene, blake3::hash(&bytes).to_hex().to_string()))
 }
 
 /// Reads a file that is in memory. `name` is for messages.
@@ -194,7 +221,7 @@ fn read_bytes_of(bytes: &[u8], name: &str, limits: &Limits) -> Result<Scene, Fau
     const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
     let mut warnings = Vec::new();
     let is_glb = bytes.starts_with(glb::MAGIC);
-    let chunk = if is_glb { glb::json_chunk(bytes, &mut warnings)? } else { bytes.into() };
+    let (chunk, bin) = if is_glb { glb::chunks(bytes, &mut warnings)? } else { (bytes.into(), None) };
     let text = chunk.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&chunk);
     if text.len() < chunk.len() {
         warnings.push(Warning::ByteOrderMark);
@@ -212,7 +239,7 @@ fn read_bytes_of(bytes: &[u8], name: &str, limits: &Limits) -> Result<Scene, Fau
     }
     let text = std::str::from_utf8(text).map_err(|e| Fault::Utf8 { offset: e.valid_up_to() })?;
     let tree = parse::parse(text, limits.json_values)?;
-    let mut scene = document::scene(&tree, limits)?;
+    let mut scene = document::scene(&tree, bin.as_deref(), limits)?;
     name.clone_into(&mut scene.file_name);
     scene.warnings.splice(0..0, warnings);
     Ok(scene)

@@ -1,21 +1,29 @@
 //! From a scene to the tables that it asks for, with every reason, and to all that was left out.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::Scene;
-use super::extension::{self, Asks, GGX};
-use super::material::{Interval, Material, MaterialExtension, State};
+use super::asks::{Answer, Subject, base};
+use super::extension::{self, AREA_LIGHT, Asks, GGX};
+use super::factor::Interval;
+use super::image::Look;
+use super::material::{Material, MaterialExtension, State};
+use super::reader::Reader;
 use crate::math::shown::show;
 
 /// A material as reports name it.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct MaterialRef {
+    /// Name of the scene's file.
+    pub file: String,
     /// Position in the file; none for glTF's default material.
     pub index: Option<usize>,
     /// Its name, as in the file.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
     pub name: Option<String>,
 }
 
@@ -29,44 +37,90 @@ impl fmt::Display for MaterialRef {
     }
 }
 
-/// Who asks for a table, and why.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct AskedBy {
-    /// The material.
-    pub material: MaterialRef,
-    /// The layer and its roughness.
-    pub why: String,
-    /// Smallest and largest roughness that this layer can have.
-    pub roughness: [f64; 2],
+/// An id: one of this program's own words.
+pub type Id = Cow<'static, str>;
+
+/// The values of a quantity over all who ask.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Range {
+    /// Smallest.
+    pub lo: f64,
+    /// Largest.
+    pub hi: f64,
+    /// The values, rising, if they are constants and at most [`MOST_VALUES`].
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub values: Option<Vec<f64>>,
 }
 
-/// A table family that the scene asks for.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// Most values that a [`Range`] lists.
+pub const MOST_VALUES: usize = 8;
+
+impl Range {
+    fn new(of: Interval) -> Range {
+        Range { lo: of.lo, hi: of.hi, values: of.value().map(|v| vec![v]) }
+    }
+
+    fn join(&mut self, other: &Range) {
+        self.lo = self.lo.min(other.lo);
+        self.hi = self.hi.max(other.hi);
+        let both = self.values.take().zip(other.values.as_ref()).map(|(mut all, more)| {
+            all.extend(more);
+            all.sort_by(f64::total_cmp);
+            all.dedup();
+            all
+        });
+        self.values = both.filter(|all| all.len() <= MOST_VALUES);
+    }
+
+    /// The only value, if there is only one.
+    #[must_use]
+    pub fn value(&self) -> Option<f64> {
+        (self.lo.to_bits() == self.hi.to_bits()).then_some(self.lo)
+    }
+}
+
+/// Who asks for a table, and why.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AskedBy {
+    /// The material; none if the file as a whole asks.
+    pub material: MaterialRef,
+    /// The layer.
+    pub layer: Id,
+    /// The layer and its ranges, in words.
+    pub why: String,
+    /// Smallest and largest value of each quantity that this layer can have.
+    pub ranges: BTreeMap<Id, [f64; 2]>,
+}
+
+/// A table family that the scenes ask for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Need {
     /// Id of the table family: `ggx`.
-    pub table: &'static str,
-    /// Smallest and largest roughness over all who ask; perceptual, in [0, 1].
-    pub roughness: [f64; 2],
+    pub table: Id,
+    /// What it must cover, by quantity.
+    pub ranges: BTreeMap<Id, Range>,
     /// Who asks, in the file's order. Never empty.
     pub asked_by: Vec<AskedBy>,
 }
 
 /// Why something asks for no table here.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LeftOutKind {
     /// It needs none: the picture is complete without it.
     AsksForNothing,
     /// It is never seen.
     Unused,
-    /// It needs a table that cannot be baked yet: the picture is not complete.
+    /// Another material model takes the place of glTF's: nothing here knows it.
+    ReplacedShading,
+    /// It needs a table that cannot be baked: the picture is not complete.
     NotSupported,
     /// What it needs is not known.
     Unknown,
 }
 
 /// Something that was looked at and asks for no table. Nothing is left out in silence.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LeftOut {
     /// Why, in one word for programs.
     pub kind: LeftOutKind,
@@ -93,8 +147,8 @@ impl fmt::Display for LeftOut {
     }
 }
 
-/// All that a scene asks for and all that it does not.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+/// All that scenes ask for and all that they do not.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Needs {
     /// The tables to bake.
     pub needs: Vec<Need>,
@@ -102,9 +156,17 @@ pub struct Needs {
     pub left_out: Vec<LeftOut>,
 }
 
-/// What a scene asks for.
+impl Needs {
+    /// Is something needed and not baked, or not known?
+    #[must_use]
+    pub fn in_doubt(&self) -> bool {
+        self.left_out.iter().any(|l| matches!(l.kind, LeftOutKind::NotSupported | LeftOutKind::Unknown))
+    }
+}
+
+/// What a scene asks for, its textures not looked at.
 ///
-/// Each lit material that is used asks for the GGX table of its base layer, and each of its extensions for what
+/// Each lit material that is used asks for the GGX tables of its base layer, and each of its extensions for what
 /// the [registry](extension::EXTENSIONS) says. Primitives without a material ask for glTF's default material
 /// (metallic 1, roughness 1). A texture on roughness asks for [0, factor], an animation for [0, 1].
 ///
@@ -115,56 +177,137 @@ pub struct Needs {
 ///     "meshes": [ { "primitives": [ { "attributes": {}, "material": 0 } ] } ] }"#;
 /// let scene = scene::read_slice(text.as_bytes(), "steel.gltf", &Limits::default())?;
 /// let needs = scene::analyse(&scene);
-/// assert_eq!((needs.needs[0].table, needs.needs[0].roughness), ("ggx", [0.4, 0.4]));
+/// assert_eq!(needs.needs[0].table, "ggx");
+/// assert_eq!(needs.needs[0].ranges["roughness"].value(), Some(0.4));
 /// # Ok::<(), scene::SceneError>(())
 /// ```
 #[must_use]
 pub fn analyse(scene: &Scene) -> Needs {
-    let mut needs = Collector::default();
-    if scene.primitives == 0 {
-        needs.leave(
-            LeftOutKind::AsksForNothing,
-            "file",
-            "it has no mesh primitive, so nothing is shaded",
-            None,
-        );
+    analyse_with(scene, &Look::none(), Reader::default())
+}
+
+/// What a scene asks for, with what its textures hold, by a shader that reads like this.
+#[must_use]
+pub fn analyse_with(scene: &Scene, look: &Look, reader: Reader) -> Needs {
+    let mut all = Collector { reader, ..Collector::default() };
+    all.scene(scene, look);
+    all.lights(scene);
+    all.out
+}
+
+/// Joins what scenes ask for: ranges grow, askers and reasons follow each other.
+#[derive(Debug, Default)]
+pub struct Joined(Collector);
+
+impl Joined {
+    /// Adds a scene's.
+    pub fn add(&mut self, scene: Needs) {
+        for need in scene.needs {
+            match self.0.out.needs.iter_mut().find(|n| n.table == need.table) {
+                Some(all) => {
+                    for (id, range) in need.ranges {
+                        all.ranges.entry(id).and_modify(|r| r.join(&range)).or_insert(range);
+                    }
+                    all.asked_by.extend(need.asked_by);
+                }
+                None => self.0.out.needs.push(need),
+            }
+        }
+        for left in scene.left_out {
+            self.0.leave(left.kind, &left.what, &left.why, left.materials);
+        }
     }
-    for material in &scene.materials {
-        needs.material(material);
+
+    /// All of it.
+    #[must_use]
+    pub fn needs(self) -> Needs {
+        self.0.out
     }
-    if scene.default_material_used {
-        let by = MaterialRef { index: None, name: None };
-        let count = scene.primitives_without_material;
-        let noun = if count == 1 { "primitive" } else { "primitives" };
-        let why = format!("base layer, roughness 1 ({count} {noun} without a material)");
-        needs.ask(GGX, by, why, Interval::constant(1.0));
-    }
-    needs.declared(scene);
-    needs.out
 }
 
 /// Collects; `places` finds the entry of a reason without a search, for a hostile file has a million of them.
-#[derive(Default)]
+#[derive(Debug, Default)]
 struct Collector {
+    reader: Reader,
     out: Needs,
     places: BTreeMap<(LeftOutKind, String, String), usize>,
 }
 
 impl Collector {
-    fn ask(&mut self, table: &'static str, material: MaterialRef, why: String, roughness: Interval) {
-        let [lo, hi] = [roughness.lo, roughness.hi];
-        let by = AskedBy { material, why, roughness: [lo, hi] };
+    fn scene(&mut self, scene: &Scene, look: &Look) {
+        let file = |index, name| MaterialRef { file: scene.file_name.clone(), index, name };
+        if scene.primitives == 0 {
+            let why = "it has no mesh primitive, so nothing is shaded";
+            self.leave(LeftOutKind::AsksForNothing, "file", why, None);
+        }
+        for material in &scene.materials {
+            self.material(material, file(Some(material.index), material.name.clone()), look);
+        }
+        if scene.default_material_used {
+            let count = scene.primitives_without_material;
+            let noun = if count == 1 { "primitive" } else { "primitives" };
+            let ranges = vec![
+                ("roughness", self.reader.roughness(Interval::constant(1.0))),
+                ("f0", Interval::constant(1.0)),
+            ];
+            let more = format!(" ({count} {noun} without a material)");
+            self.ask(GGX, "base layer", file(None, None), ranges, &more);
+        }
+        self.declared(scene);
+    }
+
+    /// Area lights fall on every lobe of the scene.
+    fn lights(&mut self, scene: &Scene) {
+        const NAME: &str = "EXT_lights_area";
+        if !scene.extensions_used.iter().chain(&scene.extensions_required).any(|e| e == NAME) {
+            return;
+        }
+        let rough = self.out.needs.iter().filter_map(|n| n.ranges.get("roughness"));
+        let (lo, hi) = rough.fold((1.0_f64, 0.0_f64), |(lo, hi), r| (lo.min(r.lo), hi.max(r.hi)));
+        if lo > hi {
+            return self.leave(LeftOutKind::AsksForNothing, NAME, "no lobe has a roughness", None);
+        }
+        let by = MaterialRef { file: scene.file_name.clone(), index: None, name: None };
+        let spread = super::Spread::Constant;
+        self.ask(AREA_LIGHT, "area lights", by, vec![("roughness", Interval { lo, hi, spread })], "");
+    }
+
+    fn ask(
+        &mut self,
+        table: &'static str,
+        layer: &'static str,
+        material: MaterialRef,
+        ranges: Vec<(&'static str, Interval)>,
+        more: &str,
+    ) {
+        // f0 and f90 choose channels; they are no reason that anybody would look for
+        let told = ranges.iter().filter(|(id, _)| !matches!(*id, "f0" | "f90"));
+        let told: Vec<String> = told.map(|(id, range)| format!("{id} {range}")).collect();
+        let why = format!("{layer}, {}{more}", told.join(", "));
+        let pairs = ranges.iter().map(|(id, range)| (Id::Borrowed(*id), [range.lo, range.hi])).collect();
+        let by = AskedBy { material, layer: layer.into(), why, ranges: pairs };
+        let new = ranges.into_iter().map(|(id, range)| (Id::Borrowed(id), Range::new(range)));
         match self.out.needs.iter_mut().find(|need| need.table == table) {
             Some(need) => {
-                need.roughness = [need.roughness[0].min(lo), need.roughness[1].max(hi)];
+                for (id, range) in new {
+                    need.ranges.entry(id).and_modify(|all| all.join(&range)).or_insert(range);
+                }
                 need.asked_by.push(by);
             }
-            None => self.out.needs.push(Need { table, roughness: [lo, hi], asked_by: vec![by] }),
+            None => {
+                self.out.needs.push(Need { table: table.into(), ranges: new.collect(), asked_by: vec![by] })
+            }
         }
     }
 
     /// Equal reasons share one entry: a file with 50 anisotropic materials is one line.
-    fn leave(&mut self, kind: LeftOutKind, what: &str, why: &str, material: Option<MaterialRef>) {
+    fn leave(
+        &mut self,
+        kind: LeftOutKind,
+        what: &str,
+        why: &str,
+        materials: impl IntoIterator<Item = MaterialRef>,
+    ) {
         let next = self.out.left_out.len();
         let place = *self.places.entry((kind, what.to_owned(), why.to_owned())).or_insert(next);
         if place == next {
@@ -172,77 +315,81 @@ impl Collector {
             self.out.left_out.push(LeftOut { kind, what, why, materials: Vec::new() });
         }
         if let Some(left) = self.out.left_out.get_mut(place) {
-            left.materials.extend(material);
+            left.materials.extend(materials);
         }
     }
 
-    fn material(&mut self, material: &Material) {
-        let by = MaterialRef { index: Some(material.index), name: material.name.clone() };
+    fn answer(&mut self, what: &str, answers: Vec<Answer>, by: &MaterialRef, more: &str) {
+        for answer in answers {
+            match answer {
+                Answer::Ask { family, layer, ranges } => self.ask(family, layer, by.clone(), ranges, more),
+                Answer::Nothing(why) => self.leave(LeftOutKind::AsksForNothing, what, &why, Some(by.clone())),
+                Answer::Unknown(why) => self.leave(LeftOutKind::Unknown, what, &why, Some(by.clone())),
+            }
+        }
+    }
+
+    fn material(&mut self, material: &Material, by: MaterialRef, look: &Look) {
         if !material.used {
             return self.leave(LeftOutKind::Unused, "material", "no mesh primitive uses it", Some(by));
         }
-        if material.unlit() {
+        if material.asks(|asks| matches!(asks, Asks::Unlit)) {
             let why = "a constant colour, whatever else the material says";
             return self.leave(LeftOutKind::AsksForNothing, "KHR_materials_unlit", why, Some(by));
         }
-        self.base_layer(material, &by);
+        if !material.lit {
+            let why = "points and lines without normals are a constant colour";
+            return self.leave(LeftOutKind::AsksForNothing, "material", why, Some(by));
+        }
         for extension in &material.extensions {
-            self.extension(extension, &by);
-        }
-    }
-
-    /// The base layer asks unless it is black, or unless only an extension describes the material.
-    fn base_layer(&mut self, material: &Material, by: &MaterialRef) {
-        let replaced = material.extensions.iter().any(|e| e.name == "KHR_materials_pbrSpecularGlossiness");
-        if replaced && !material.metallic_roughness {
-            return;
-        }
-        // KHR_materials_specular: a factor of 0 disables the reflection, F90 included.
-        if material.base_is_black() {
-            let why = "no reflection: specularFactor = 0 and metallicFactor = 0";
-            return self.leave(LeftOutKind::AsksForNothing, "base layer", why, Some(by.clone()));
-        }
-        let mut why = format!("base layer, roughness {}", material.roughness);
-        for e in &material.extensions {
-            if matches!(
-                extension::find(&e.name).map(|x| &x.asks),
-                Some(Asks::BaseLayer | Asks::RoughnessTexture)
-            ) {
-                why.push_str(", ");
-                why.push_str(&e.name);
+            if let Some(Asks::Replaced(model)) = extension::find(&extension.name).map(|x| &x.asks) {
+                let why = format!("replaced shading: {model}; nothing else of the material counts");
+                return self.leave(LeftOutKind::ReplacedShading, &extension.name, &why, Some(by));
             }
         }
-        self.ask(GGX, by.clone(), why, material.roughness);
+        let subject = Subject { material, look, reader: &self.reader };
+        let (base, named) = (base::asks(&subject), base_names(material));
+        let layers: Vec<_> = material.extensions.iter().map(|e| (e, layer(&subject, e))).collect();
+        // one line an image, however many of its channels count
+        let images: BTreeMap<_, _> = material.sampled().map(|sampled| (sampled.image, sampled)).collect();
+        for (image, sampled) in images {
+            if let Some(why) = look.unknown(sampled) {
+                let what = image.map_or_else(|| "texture".to_owned(), |i| format!("images[{i}]"));
+                let why = format!("not known, so its whole range counts: {why}");
+                self.leave(LeftOutKind::Unknown, &what, &why, Some(by.clone()));
+            }
+        }
+        self.answer("base layer", base, &by, &named);
+        for (extension, said) in layers {
+            self.extension(extension, said, &by, look);
+        }
     }
 
-    fn extension(&mut self, extension: &MaterialExtension, by: &MaterialRef) {
-        let by = by.clone();
+    fn extension(&mut self, extension: &MaterialExtension, said: Vec<Answer>, by: &MaterialRef, look: &Look) {
         let name = extension.name.as_str();
-        let asks = extension::find(name).map(|x| &x.asks);
-        if let State::Off(why) = &extension.state {
-            return self.leave(LeftOutKind::AsksForNothing, name, &format!("off: {why}"), Some(by));
+        let by_it = || Some(by.clone());
+        if let State::Off(why) = extension.state(look) {
+            return self.leave(LeftOutKind::AsksForNothing, name, &format!("off: {why}"), by_it());
         }
-        match (asks, extension.roughness) {
-            (Some(Asks::Lobe(lobe)), Some(roughness)) => {
-                self.ask(lobe.table, by, format!("{}, roughness {roughness}", lobe.layer), roughness);
+        match extension::find(name).map(|x| &x.asks) {
+            Some(Asks::Layer(..)) => self.answer(name, said, by, ""),
+            Some(Asks::NotYet { table, .. }) => {
+                self.leave(LeftOutKind::NotSupported, name, &not_yet(table), by_it());
             }
-            (Some(Asks::NotYet { table, .. }), _) => {
-                self.leave(LeftOutKind::NotSupported, name, &not_yet(table), Some(by));
-            }
-            (Some(Asks::Nothing(why)), _) => self.leave(LeftOutKind::AsksForNothing, name, why, Some(by)),
-            // Named with the base layer already, or returned before.
-            (Some(Asks::BaseLayer | Asks::RoughnessTexture | Asks::Unlit | Asks::Lobe(_)), _) => {}
-            (None, _) => self.leave(LeftOutKind::Unknown, name, UNKNOWN, Some(by)),
+            Some(Asks::Nothing(why)) => self.leave(LeftOutKind::AsksForNothing, name, why, by_it()),
+            Some(Asks::Unknown(why)) => self.leave(LeftOutKind::Unknown, name, why, by_it()),
+            // Named with the base layer already, or returned before, or of the file.
+            Some(
+                Asks::BaseLayer | Asks::RoughnessTexture | Asks::Unlit | Asks::Replaced(_) | Asks::AreaLights,
+            ) => {}
+            None => self.leave(LeftOutKind::Unknown, name, UNKNOWN, by_it()),
         }
     }
 
     /// The extensions that the file declares and no material has brought up yet.
     fn declared(&mut self, scene: &Scene) {
-        let lit = scene.materials.iter().filter(|m| m.used && !m.unlit()).flat_map(|m| &m.extensions);
-        let mut seen: BTreeSet<&str> = lit.map(|e| e.name.as_str()).collect();
-        if scene.materials.iter().any(|m| m.used && m.unlit()) {
-            seen.insert("KHR_materials_unlit");
-        }
+        let lit = scene.materials.iter().filter(|m| m.used && m.lit).flat_map(|m| &m.extensions);
+        let seen: BTreeSet<&str> = lit.map(|e| e.name.as_str()).collect();
         let all_required: BTreeSet<&String> = scene.extensions_required.iter().collect();
         let mut done = BTreeSet::new();
         for name in scene.extensions_required.iter().chain(&scene.extensions_used) {
@@ -251,12 +398,20 @@ impl Collector {
             if !done.insert(name) || (seen.contains(name.as_str()) && !required) {
                 continue;
             }
+            // A light or a graph belongs to the file; a material extension without a material does nothing.
+            let of_the_file = !name.contains("_materials_");
             match known.map(|x| &x.asks) {
                 None if required => self.leave(LeftOutKind::Unknown, name, UNKNOWN_REQUIRED, None),
                 None => self.leave(LeftOutKind::Unknown, name, UNKNOWN, None),
                 Some(Asks::Nothing(why)) => self.leave(LeftOutKind::AsksForNothing, name, why, None),
-                // A light or a graph belongs to the file; a material extension without a material does nothing.
-                Some(Asks::NotYet { table, .. }) if !name.contains("_materials_") => {
+                Some(Asks::Unknown(why)) => self.leave(LeftOutKind::Unknown, name, why, None),
+                // asked for when every lobe is known
+                Some(Asks::AreaLights) => {}
+                Some(Asks::Replaced(model)) if of_the_file => {
+                    let why = format!("replaced shading: {model}");
+                    self.leave(LeftOutKind::ReplacedShading, name, &why, None);
+                }
+                Some(Asks::NotYet { table, .. }) if of_the_file => {
                     self.leave(LeftOutKind::NotSupported, name, &not_yet(table), None);
                 }
                 Some(_) => self.leave(LeftOutKind::AsksForNothing, name, NOT_THERE, None),
@@ -265,11 +420,27 @@ impl Collector {
     }
 }
 
+/// What an extension that is on makes of the material.
+fn layer(subject: &Subject<'_>, extension: &MaterialExtension) -> Vec<Answer> {
+    match extension::find(&extension.name).map(|x| &x.asks) {
+        Some(Asks::Layer(_, asks)) if matches!(extension.state(subject.look), State::On(_)) => asks(subject),
+        _ => Vec::new(),
+    }
+}
+
+/// The extensions that change the base layer, for its reason.
+fn base_names(material: &Material) -> String {
+    let changes = |e: &&MaterialExtension| {
+        matches!(extension::find(&e.name).map(|x| &x.asks), Some(Asks::BaseLayer | Asks::RoughnessTexture))
+    };
+    material.extensions.iter().filter(changes).map(|e| format!(", {}", e.name)).collect()
+}
+
 const NOT_THERE: &str = "declared, but no lit material in use has it";
 const UNKNOWN: &str = "unknown extension: what it asks for is not known";
 const UNKNOWN_REQUIRED: &str = "unknown extension that the file requires: only materials were read, \
     and what it asks for is not known";
 
 fn not_yet(table: &str) -> String {
-    format!("not supported yet; asks for: {table}")
+    format!("no table for it; asks for: {table}")
 }

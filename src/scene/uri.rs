@@ -3,10 +3,12 @@
 //! The rules are the same on every system, so that a file is refused everywhere or nowhere:
 //!
 //! 1. `data:` is allowed up to a size; any other scheme (`http:`, `file:`, and so a drive letter) is refused.
-//! 2. Percent escapes are decoded once. What then still holds an escape was encoded twice and is refused.
-//! 3. No absolute path, no `..`, no backslash, no colon, no control character, no escaped `/`.
+//! 2. Percent escapes are decoded once, `%2F` too, and what comes out is judged. What then still holds an escape was encoded twice
+//!    and is refused.
+//! 3. No absolute path, no backslash, no colon, no control character. `..` takes the name before it away; a path that leads out of
+//!    the folder is no fault, for exporters write such, but is opened only below a root that the user names.
 //! 4. No name that Windows reads in its own way: `con`, `nul.png`, a dot or a blank at the end.
-//! 5. [`resolve_uri`] also follows symbolic links and refuses one that leads out of the folder.
+//! 5. [`resolve_uri`] also follows symbolic links and refuses one that leads out of the root.
 //!
 //! [`read`](super::read) applies rules 1 to 4 to every buffer and image and opens none of them.
 
@@ -38,8 +40,8 @@ pub enum UriError {
     /// A path from the root of the file system or of a server.
     #[error("absolute path, allowed paths in the scene's folder")]
     Absolute,
-    /// A part that goes up.
-    #[error("`..` leaves the folder, allowed paths in the scene's folder")]
+    /// A path that leads out of the root.
+    #[error("`..` leaves the scene's folder; name a folder that holds both with `--root`")]
     Parent,
     /// A backslash: a separator on one system, a letter on another.
     #[error("backslash, allowed `/` as the separator")]
@@ -53,9 +55,6 @@ pub enum UriError {
         /// The code point.
         code: u32,
     },
-    /// `%2f`: a separator that hides.
-    #[error("escaped `/`")]
-    HiddenSeparator,
     /// `%252e`: still escaped after decoding.
     #[error("escaped twice")]
     EscapedTwice,
@@ -102,8 +101,10 @@ pub enum Checked {
         /// Size after decoding; for base64 an upper bound that is at most 2 bytes off.
         bytes: u64,
     },
-    /// A path in the scene's folder: its names, decoded. `.` and empty names are gone.
+    /// A path in the scene's folder: its names, decoded. `.`, `..` and empty names are gone.
     Inside(Vec<String>),
+    /// A path out of it: `..` as often as it leads up, then names.
+    Above(Vec<String>),
 }
 
 /// A URI that also passed rule 5.
@@ -126,7 +127,8 @@ pub enum Resolved {
 /// ```
 /// use brdfbake::scene::{Checked, check_uri};
 /// assert_eq!(check_uri("tex/my%20wood.png", 0)?, Checked::Inside(vec!["tex".into(), "my wood.png".into()]));
-/// assert!(check_uri("tex/%2e%2e/%2e%2e/secret.png", 0).is_err());
+/// assert_eq!(check_uri("tex/%2e%2e/%2e%2e/a.png", 0)?, Checked::Above(vec!["..".into(), "a.png".into()]));
+/// assert!(check_uri("/etc/passwd", 0).is_err());
 /// # Ok::<(), brdfbake::scene::UriError>(())
 /// ```
 pub fn check_uri(uri: &str, max_data: u64) -> Result<Checked, UriError> {
@@ -138,10 +140,6 @@ pub fn check_uri(uri: &str, max_data: u64) -> Result<Checked, UriError> {
     }
     if uri.len() > LONGEST_URI {
         return Err(UriError::TooLong { bytes: uri.len() });
-    }
-    let hidden = |escape: &[u8]| uri.as_bytes().windows(3).any(|w| w.eq_ignore_ascii_case(escape));
-    if hidden(b"%2f") {
-        return Err(UriError::HiddenSeparator);
     }
     let path = decode(uri)?;
     if escapes(path.as_bytes()) {
@@ -167,32 +165,62 @@ fn check_path(path: &str) -> Result<Checked, UriError> {
     let mut names = Vec::new();
     for name in path.split('/').filter(|name| !name.is_empty() && *name != ".") {
         if name == ".." {
-            return Err(UriError::Parent);
+            match names.last() {
+                Some(last) if last != ".." => drop(names.pop()),
+                _ => names.push(name.to_owned()),
+            }
+            continue;
         }
         if reserved(name) {
             return Err(UriError::Reserved { name: name.chars().take(64).collect() });
         }
         names.push(name.to_owned());
     }
-    if names.is_empty() { Err(UriError::Empty) } else { Ok(Checked::Inside(names)) }
+    match names.first().map(String::as_str) {
+        None => Err(UriError::Empty),
+        Some("..") => Ok(Checked::Above(names)),
+        Some(_) => Ok(Checked::Inside(names)),
+    }
 }
 
-/// The file that a URI of a scene in `base_dir` means, by all five rules.
+/// The file that a URI of a scene in `base_dir` means, by all five rules, the folder being the root.
+///
+/// # Errors
+/// The first rule that the URI breaks, [`UriError::Parent`] for a path out of the folder, or [`UriError::Io`] if the folder cannot be
+/// looked at.
+pub fn resolve_uri(base_dir: &Path, uri: &str, max_data: u64) -> Result<Resolved, UriError> {
+    match check_uri(uri, max_data)? {
+        Checked::Data { bytes } => Ok(Resolved::Data { bytes }),
+        Checked::Inside(names) | Checked::Above(names) => {
+            resolve(base_dir, base_dir, &names).map(Resolved::File)
+        }
+    }
+}
+
+/// The file of a path that passed rules 1 to 4, from a scene in `base_dir`, below `root`.
 ///
 /// Nothing is opened. A path that does not exist is fine: opening it will say so. Open the returned path at
 /// once: whoever may write into the folder can still swap a name for a link in between.
 ///
 /// # Errors
-/// The first rule that the URI breaks, or [`UriError::Io`] if the folder cannot be looked at.
-pub fn resolve_uri(base_dir: &Path, uri: &str, max_data: u64) -> Result<Resolved, UriError> {
-    let names = match check_uri(uri, max_data)? {
-        Checked::Data { bytes } => return Ok(Resolved::Data { bytes }),
-        Checked::Inside(names) => names,
-    };
-    let root = base_dir.canonicalize().map_err(|source| UriError::Io { source })?;
-    let mut path = root.clone();
+/// [`UriError::Parent`] for a path out of the root, [`UriError::LinkOutside`] for such a link, [`UriError::Io`] if a folder cannot be
+/// looked at.
+pub fn resolve(base_dir: &Path, root: &Path, names: &[String]) -> Result<PathBuf, UriError> {
+    let io = |source| UriError::Io { source };
+    let root = root.canonicalize().map_err(io)?;
+    let mut path = base_dir.canonicalize().map_err(io)?;
+    if !path.starts_with(&root) {
+        return Err(UriError::Parent);
+    }
     let mut exists = true;
     for name in names {
+        if name == ".." {
+            // only in front, where the folder has no link in it any more
+            if path == root || !path.pop() {
+                return Err(UriError::Parent);
+            }
+            continue;
+        }
         path.push(name);
         if !exists {
             continue;
@@ -207,7 +235,7 @@ pub fn resolve_uri(base_dir: &Path, uri: &str, max_data: u64) -> Result<Resolved
             Err(source) => return Err(UriError::Io { source }),
         }
     }
-    Ok(Resolved::File(path))
+    Ok(path)
 }
 
 /// Where a link ends, if that is inside the root. A link to nothing is refused: the target may appear later.

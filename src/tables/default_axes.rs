@@ -49,13 +49,7 @@ impl TableInfo {
             seen.push(id);
             new
         });
-        let bases: Vec<&str> = axes.iter().map(|a| a.quantity.base_id()).collect();
-        for axis in &mut axes {
-            if axis.warp.couples_to().is_some_and(|to| !bases.contains(&to)) {
-                // the best that needs no other axis: a grazing view changes fastest
-                axis.warp = Warp::Power(0.5);
-            }
-        }
+        uncouple(&mut axes);
         axes
     }
 
@@ -82,6 +76,17 @@ impl TableInfo {
         // a split part has its Fresnel factor outside the table
         let idle = matches!(self.model, ModelUse::Split(_)) && other.quantity.id == "f0";
         (!idle).then_some(other)
+    }
+}
+
+/// Warps that follow an axis which is not there become one of their own.
+pub(crate) fn uncouple(axes: &mut [Axis]) {
+    let bases: Vec<&str> = axes.iter().map(|a| a.quantity.base_id()).collect();
+    for axis in axes {
+        if axis.warp.couples_to().is_some_and(|to| !bases.contains(&to)) {
+            // the best that needs no other axis: a grazing view changes fastest
+            axis.warp = Warp::Power(0.5);
+        }
     }
 }
 

@@ -199,7 +199,8 @@ struct Dfg {
     parts: Vec<Part>,
     /// The functionals of the parts, in order: one pass serves them all.
     functionals: Vec<Functional>,
-    alpha: usize,
+    /// Number of the axis of alpha; the model's own value if there is none.
+    alpha: Result<usize, f64>,
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
@@ -223,7 +224,16 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
             functionals.push(needed);
         }
     }
-    let (sweep, alpha) = (Sweep::new(spec, true)?, spec.coordinate("alpha")?);
+    let sweep = Sweep::new(spec, true)?;
+    let own = || {
+        let (info, params) = spec.model.as_ref()?;
+        params.number(info.measured("alpha")?.id).ok()
+    };
+    let alpha = match (spec.axis("alpha"), own()) {
+        (Some(axis), _) => Ok(axis),
+        (None, Some(alpha)) => Err(alpha),
+        (None, None) => Ok(spec.coordinate("alpha")?),
+    };
     let channels = spec.layout.ids().collect();
     Ok(Box::new(Dfg { sweep, channels, parts, functionals, alpha }))
 }
@@ -315,7 +325,7 @@ impl Baker for Dfg {
                     (fc - mirror * one, fc_error + mirror * one_error)
                 }
                 Part::Lobe(lobe) | Part::Kept(lobe, ..) => {
-                    let model = lobe.build(at[self.alpha])?;
+                    let model = lobe.build(self.alpha.map_or_else(|alpha| alpha, |axis| at[axis]))?;
                     // an isotropic lobe: the azimuth of the view does not matter
                     let e = integrate(&*model, view.in_plane(), &[Functional::One], tolerance)?;
                     all.evaluations = all.evaluations.saturating_add(e.evaluations);

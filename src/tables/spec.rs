@@ -333,8 +333,13 @@ fn check_axes(
     given: &Map<String, Json>,
 ) -> Result<(), BindError> {
     let bases: Vec<&'static str> = grid.axes().iter().map(|a| a.quantity.base_id()).collect();
+    // a coordinate that is a parameter of the model may be given as one: the table is a row of it
+    let fixed = |needed: &str| {
+        let param = model.and_then(|(info, _)| info.measured(needed));
+        param.is_some_and(|p| given.keys().any(|key| p.is_called(key)))
+    };
     for needed in kind.coordinates {
-        if !bases.contains(needed) {
+        if !bases.contains(needed) && !fixed(needed) {
             let got = axis_ids(grid);
             return Err(BindError::MissingAxis { kind: kind.id, needed, got });
         }

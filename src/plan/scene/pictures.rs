@@ -1,0 +1,165 @@
+//! The images of a scene, read for the levels of their channels: from the scene's own file, or from files below a root.
+
+use crate::encode::read as pictures;
+use crate::picture::{self, Levels, PictureError};
+use crate::scene::{Image, Look, Scene, Source, UriError, resolve};
+use rayon::prelude::*;
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+use std::sync::{Condvar, Mutex, PoisonError};
+
+/// Most pixels of an image, if nothing else is said: 8192 x 8192.
+pub const PIXELS: u64 = 1 << 26;
+
+/// Largest image file, in bytes.
+const LARGEST: u64 = 1 << 30;
+
+/// Bytes of memory that decoding takes of f64 planes of four channels, for each pixel: containers of this program.
+const PLANES: u64 = 40;
+
+const KTX2: &[u8] = b"\xabKTX 20\xbb\r\n\x1a\n";
+
+/// Reads images, several at once, with memory for [`bytes_of`] a number of pixels together.
+#[derive(Debug)]
+pub struct Pictures {
+    root: Option<PathBuf>,
+    limit: u64,
+    left: Mutex<u64>,
+    freed: Condvar,
+}
+
+/// Memory for images of so many pixels: four bytes each.
+#[must_use]
+pub const fn bytes_of(pixels: u64) -> u64 {
+    pixels.saturating_mul(4)
+}
+
+impl Pictures {
+    /// Reads files below `root`, or below the folder of each scene if there is none, of at most `pixels` pixels.
+    #[must_use]
+    pub fn new(root: Option<PathBuf>, pixels: u64) -> Pictures {
+        let limit = bytes_of(pixels);
+        Pictures { root, limit, left: Mutex::new(limit), freed: Condvar::new() }
+    }
+
+    /// What is in the images of a scene in `folder`. What cannot be read is noted with the reason.
+    #[must_use]
+    pub fn look(&self, scene: &Scene, folder: &Path) -> Look {
+        let mut look = Look::none();
+        let found: Vec<_> = scene.images.par_iter().map(|image| self.levels(image, folder)).collect();
+        for (image, levels) in scene.images.iter().zip(found) {
+            look.add(image.index, levels);
+        }
+        look
+    }
+
+    fn levels(&self, image: &Image, folder: &Path) -> Result<[Levels; 4], String> {
+        match &image.source {
+            Source::Missing(why) => Err(why.clone()),
+            Source::Embedded(bytes) => self.decode(bytes),
+            Source::File { names, part } => {
+                let shown = crate::math::shown::show(&names.join("/"));
+                let said = |why: String| format!("{shown}: {why}");
+                let root = self.root.as_deref().unwrap_or(folder);
+                let path = resolve(folder, root, names).map_err(|e| said(refusal(&e)))?;
+                let bytes = file(&path, *part).map_err(said)?;
+                self.decode(&bytes).map_err(said)
+            }
+        }
+    }
+
+    fn decode(&self, bytes: &[u8]) -> Result<[Levels; 4], String> {
+        let mut taken = Taken { from: self, bytes: 0 };
+        if bytes.starts_with(KTX2) {
+            return plain(bytes, &mut taken);
+        }
+        picture::levels(bytes, |needed| taken.take(needed)).map_err(|e| match e {
+            PictureError::Memory { .. } => format!("{e}; allow more with `--pixels`"),
+            other => other.to_string(),
+        })
+    }
+}
+
+fn refusal(error: &UriError) -> String {
+    error.to_string()
+}
+
+/// Memory that is given back when the picture is gone.
+struct Taken<'a> {
+    from: &'a Pictures,
+    bytes: u64,
+}
+
+impl Taken<'_> {
+    /// Waits until so many bytes are free.
+    fn take(&mut self, needed: u64) -> Result<(), u64> {
+        if needed > self.from.limit {
+            return Err(self.from.limit);
+        }
+        let mut left = self.from.left.lock().unwrap_or_else(PoisonError::into_inner);
+        while *left < needed {
+            left = self.from.freed.wait(left).unwrap_or_else(PoisonError::into_inner);
+        }
+        *left -= needed;
+        self.bytes += needed;
+        Ok(())
+    }
+}
+
+impl Drop for Taken<'_> {
+    fn drop(&mut self) {
+        *self.from.left.lock().unwrap_or_else(PoisonError::into_inner) += self.bytes;
+        self.from.freed.notify_all();
+    }
+}
+
+/// A KTX2 texture of a plain format: its first level.
+fn plain(bytes: &[u8], taken: &mut Taken<'_>) -> Result<[Levels; 4], String> {
+    let word =
+        |at: usize| bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map_or(0, u32::from_le_bytes);
+    let (width, height) = (word(20), word(24).max(1));
+    let needed = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(PLANES);
+    taken.take(needed).map_err(|limit| {
+        format!("{}; allow more with `--pixels`", PictureError::Memory { width, height, needed, limit })
+    })?;
+    let image = pictures::read_bytes(bytes).map_err(|e| e.to_string())?;
+    let mut all = [Levels::ONE; 4];
+    for (name, levels) in ["R", "G", "B", "A"].iter().zip(&mut all) {
+        let grey = if *name == "A" { None } else { image.channel("Y") };
+        let Some(plane) = image.channel(name).or(grey) else { continue };
+        let mut codes = plane.values.clone();
+        codes.sort_by(f64::total_cmp);
+        codes.dedup();
+        let [lo, hi] = [codes.first(), codes.last()].map(|v| v.copied().unwrap_or(0.0));
+        if !(0.0..=1.0).contains(&lo) || !(0.0..=1.0).contains(&hi) {
+            return Err(format!(
+                "its channel {name} goes from {lo} to {hi}, and factors are multiplied by [0, 1]"
+            ));
+        }
+        *levels = Levels { lo, hi, count: u32::try_from(codes.len()).unwrap_or(u32::MAX) };
+    }
+    Ok(all)
+}
+
+/// A file, or a part of it.
+fn file(path: &Path, part: Option<[u64; 2]>) -> Result<Vec<u8>, String> {
+    let said = |e: std::io::Error| e.to_string();
+    // asked before opening: opening a pipe would wait for a writer
+    if !path.metadata().map_err(said)?.is_file() {
+        return Err("not a regular file".to_owned());
+    }
+    let mut file = File::open(path).map_err(said)?;
+    let size = file.metadata().map_err(said)?.len();
+    let [from, length] = part.unwrap_or([0, size]);
+    if from.checked_add(length).is_none_or(|end| end > size) {
+        return Err(format!("bytes {from} to {} of a file of {size}", from.saturating_add(length)));
+    }
+    if length > LARGEST {
+        return Err(format!("{length} bytes, and images of at most {LARGEST} are read"));
+    }
+    file.seek(SeekFrom::Start(from)).map_err(said)?;
+    let mut bytes = Vec::new();
+    file.take(length).read_to_end(&mut bytes).map_err(said)?;
+    Ok(bytes)
+}

@@ -1,0 +1,27 @@
+//! Why tables are baked, as JSON: for the manifest and for programs.
+
+use super::{Asked, Survey};
+use serde_json::{Value as Json, json};
+
+/// Scenes with their hashes, what they need and who asks, the tables for it, where they stop short, and what was left out.
+#[must_use]
+pub fn reasons(survey: &Survey, asked: &[Asked]) -> Json {
+    let scenes: Vec<Json> = survey
+        .scenes
+        .iter()
+        .map(|s| {
+            let warnings: Vec<String> = s.warnings.iter().map(ToString::to_string).collect();
+            json!({ "file": s.file, "blake3": s.hash, "materials": s.materials, "images": s.images, "warnings": warnings })
+        })
+        .collect();
+    let tables: Vec<Json> = asked
+        .iter()
+        .map(|a| json!({ "table": a.request.name, "family": a.family, "cut": a.notes }))
+        .collect();
+    json!({
+        "files": scenes,
+        "needs": survey.needs.needs,
+        "tables": tables,
+        "left_out": survey.needs.left_out,
+    })
+}

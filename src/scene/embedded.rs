@@ -1,0 +1,99 @@
+//! The images whose levels matter, and where their bytes are: a file, a `data:` URI, or a part of a buffer.
+//!
+//! Source: glTF 2.0 §3.8.3 (images), §3.6.1 (buffers and views), RFC 2397 (`data:`).
+
+use super::Limits;
+use super::error::Fault;
+use super::image::{Image, Source};
+use super::json::Node;
+use super::uri::{Checked, check_uri};
+use data_url::DataUrl;
+use std::collections::BTreeSet;
+
+/// Extensions of a texture that name an image of their own, in the order in which they are looked at after the core `source`.
+const SOURCES: [&str; 4] = ["EXT_texture_webp", "KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds"];
+
+/// The image of each texture.
+pub(super) fn textures(root: &Node<'_>) -> Result<Vec<Option<usize>>, Fault> {
+    let count = root.get("images")?.map_or(Ok(0), |images| images.len())?;
+    let Some(list) = root.get("textures")? else { return Ok(Vec::new()) };
+    let mut all = Vec::with_capacity(list.len()?);
+    for texture in list.items()? {
+        let mut image = texture.get("source")?.map(|s| s.index("images", count)).transpose()?;
+        if let (None, Some(extensions)) = (image, texture.get("extensions")?) {
+            for name in SOURCES {
+                let Some(extension) = extensions.get(name)? else { continue };
+                image = extension.get("source")?.map(|s| s.index("images", count)).transpose()?;
+                if image.is_some() {
+                    break;
+                }
+            }
+        }
+        all.push(image);
+    }
+    Ok(all)
+}
+
+/// The images of these numbers, with their bytes where the scene's own file has them.
+pub(super) fn images(
+    root: &Node<'_>,
+    wanted: &BTreeSet<usize>,
+    bin: Option<&[u8]>,
+    limits: &Limits,
+) -> Result<Vec<Image>, Fault> {
+    let mut all = Vec::new();
+    let Some(list) = root.get("images")? else { return Ok(all) };
+    for (index, image) in list.items()?.enumerate().filter(|(index, _)| wanted.contains(index)) {
+        let source = match (image.get("uri")?, image.get("bufferView")?) {
+            (Some(uri), _) => at_uri(&uri, None, limits)?,
+            (None, Some(view)) => in_view(root, &view, bin, limits)?,
+            (None, None) => Source::Missing("the image has neither `uri` nor `bufferView`".to_owned()),
+        };
+        all.push(Image { index, at: image.path(), source });
+    }
+    Ok(all)
+}
+
+fn at_uri(uri: &Node<'_>, part: Option<[u64; 2]>, limits: &Limits) -> Result<Source, Fault> {
+    let text = uri.text()?;
+    let fault = |source| Fault::Uri { at: uri.path(), uri: crate::math::shown::show(text), source };
+    match check_uri(text, limits.data_uri_bytes).map_err(fault)? {
+        Checked::Inside(names) | Checked::Above(names) => Ok(Source::File { names, part }),
+        Checked::Data { .. } => {
+            let bytes = DataUrl::process(text).ok().and_then(|url| url.decode_to_vec().ok());
+            let Some((bytes, _)) = bytes else {
+                return Ok(Source::Missing("its `data:` URI is no base64".to_owned()));
+            };
+            Ok(cut(&bytes, part))
+        }
+    }
+}
+
+fn cut(bytes: &[u8], part: Option<[u64; 2]>) -> Source {
+    let [from, length] =
+        part.unwrap_or([0, bytes.len() as u64]).map(|n| usize::try_from(n).unwrap_or(usize::MAX));
+    match bytes.get(from..from.saturating_add(length)) {
+        Some(part) => Source::Embedded(part.to_vec()),
+        None => {
+            Source::Missing(format!("its buffer view ends beyond the {} bytes of the buffer", bytes.len()))
+        }
+    }
+}
+
+/// The bytes of a buffer view.
+fn in_view(root: &Node<'_>, view: &Node<'_>, bin: Option<&[u8]>, limits: &Limits) -> Result<Source, Fault> {
+    let missing = |what: &str| Ok(Source::Missing(format!("there are no {what}")));
+    let Some(views) = root.get("bufferViews")? else { return missing("buffer views") };
+    let index = view.index("bufferViews", views.len()?)?;
+    let Some(view) = views.items()?.nth(index) else { return missing("buffer views") };
+    let number = |key: &'static str| view.get(key)?.map_or(Ok(0), |n| n.whole());
+    let part = Some([number("byteOffset")?, number("byteLength")?]);
+    let Some(buffers) = root.get("buffers")? else { return missing("buffers") };
+    let index = view.need("buffer", "the index of a buffer")?.index("buffers", buffers.len()?)?;
+    let Some(buffer) = buffers.items()?.nth(index) else { return missing("buffers") };
+    match (buffer.get("uri")?, bin) {
+        (Some(uri), _) => at_uri(&uri, part, limits),
+        (None, Some(bin)) if index == 0 => Ok(cut(bin, part)),
+        (None, _) => missing("bytes of its buffer"),
+    }
+}
