@@ -7,6 +7,7 @@
 #![allow(clippy::float_cmp, reason = "factors are copied from the file, not computed: they must be equal")]
 
 mod bad;
+mod judged;
 mod planned;
 mod uri;
 
@@ -88,7 +89,8 @@ fn four_materials_ask_for_one_table_and_the_rest_is_named() {
 
 #[test]
 fn a_glb_asks_for_what_its_text_form_asks_for() {
-    assert_eq!(analyse(&load("four_materials.glb")), analyse(&load("four_materials.gltf")));
+    let told = |name: &str| serde_json::to_string(&analyse(&load(name))).unwrap().replace(name, "NAME");
+    assert_eq!(told("four_materials.glb"), told("four_materials.gltf"));
     // The foreign reader accepts the fixture, so it is a real GLB and not only one that we like.
     let bytes = std::fs::read(fixture("four_materials.glb")).unwrap();
     let foreign = gltf::Gltf::from_slice(&bytes).unwrap();
@@ -338,8 +340,8 @@ fn sample_assets_ask_for_what_they_show() {
     };
     // File, askers, roughness, families: counted by hand in the files.
     let want = [
-        ("AnisotropyStrengthTest.glb", 50, [0.0, 1.0], "ggx anisotropic"),
-        ("ClearCoatTest.glb", 19, [0.0, 1.0], "ggx coat"),
+        ("AnisotropyStrengthTest.glb", 50, [0.0, 1.0], "anisotropic ggx"),
+        ("ClearCoatTest.glb", 19, [0.0, 1.0], "coat ggx"),
         ("DamagedHelmet.glb", 1, [0.0, 1.0], "ggx"),
         ("SpecularTest.glb", 23, [0.0, 0.8], "ggx"),
         ("TransmissionRoughnessTest.glb", 9, [0.0, 1.0], "ggx"),
@@ -347,9 +349,11 @@ fn sample_assets_ask_for_what_they_show() {
     for (name, askers, want_roughness, families) in want {
         let scene = read(&Path::new(&shared).join("assets").join(name), &Limits::default()).unwrap();
         let needs = analyse(&scene);
-        let tables: Vec<&str> = needs.needs.iter().map(|n| n.table.as_ref()).collect();
+        let mut tables: Vec<&str> = needs.needs.iter().map(|n| n.table.as_ref()).collect();
+        tables.sort_unstable();
         assert_eq!(tables.join(" "), families, "{name}");
-        let got = (needs.needs[0].asked_by.len(), roughness(&needs, "ggx"));
+        let ggx = needs.needs.iter().find(|n| n.table == "ggx").unwrap();
+        let got = (ggx.asked_by.len(), roughness(&needs, "ggx"));
         assert_eq!(got, (askers, want_roughness), "{name}");
         assert_eq!(scene.warnings, [], "{name}");
     }

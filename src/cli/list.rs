@@ -7,6 +7,7 @@ use crate::functions;
 use crate::grid::quantity::QUANTITIES;
 use crate::maps::RULES;
 use crate::models::MODELS;
+use crate::pipeline::materials;
 use crate::recipe::{ENGINES, PRESETS};
 use crate::tables::TABLES;
 use crate::verify::LAWS;
@@ -32,6 +33,8 @@ pub enum What {
     Quantities,
     /// Filter rules of parameter maps.
     Rules,
+    /// Rules of `check` for the materials of scenes.
+    Checks,
 }
 
 /// Arguments of `list`.
@@ -85,6 +88,9 @@ fn rows(what: What) -> Vec<(String, String)> {
             .collect(),
         What::Laws => LAWS.iter().map(|l| row(l.id, l.statement)).collect(),
         What::Rules => RULES.iter().map(|r| row(r.id, &format!("{}: {}", r.title, r.formula))).collect(),
+        What::Checks => {
+            materials::RULES.iter().map(|r| row(r.id, &format!("{}; bound {}", r.title, r.bound))).collect()
+        }
         What::Quantities => QUANTITIES
             .iter()
             .map(|q| {

@@ -2,6 +2,7 @@
 
 pub mod albedo;
 pub mod bake;
+pub mod check;
 pub mod describe;
 pub mod diff;
 mod engine;
@@ -45,6 +46,8 @@ enum Verb {
     Bake(bake::Args),
     /// Tell what glTF scenes need: each table, who asks for it, its axes, bytes and seconds, and what was left out and why.
     Plan(plan::Args),
+    /// Judge the materials of glTF scenes, texel by texel: energy, metalness, base colours, roughness.
+    Check(check::Args),
     /// Print what a baked file (or any picture of a format that is read) holds.
     Inspect(inspect::Args),
     /// Compare two images or two output folders.
@@ -81,6 +84,7 @@ pub fn run(cli: Cli, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     match cli.verb {
         Verb::Bake(args) => bake::run(&args, cancel),
         Verb::Plan(args) => plan::run(&args),
+        Verb::Check(args) => check::run(&args, cancel),
         Verb::Inspect(args) => inspect::run(&args, cancel),
         Verb::Diff(args) => diff::run(&args, cancel),
         Verb::Map(args) => map::run(&args, cancel),

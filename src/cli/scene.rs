@@ -23,6 +23,13 @@ pub struct Look {
     margin: f64,
 }
 
+impl Look {
+    /// Root and limits, for a shader that takes roughness like this.
+    pub(super) fn options(&self, reader: Reader) -> SurveyOptions {
+        SurveyOptions { root: self.root.clone(), pixels: self.pixels, reader }
+    }
+}
+
 fn margin(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| "it is no number".to_owned())?;
     if (0.0..=1.0).contains(&number) { Ok(number) } else { Err("it must be from 0 to 1".to_owned()) }
@@ -60,8 +67,8 @@ pub(super) fn job(
         widens: roughness.is_some_and(|r| r.widens),
         margin: look.margin,
     };
-    let options = SurveyOptions { root: look.root.clone(), pixels: look.pixels, reader };
-    let survey = pool(jobs)?.install(|| planning::survey(&files, &options)).map_err(|e| refused(&e))?;
+    let survey =
+        pool(jobs)?.install(|| planning::survey(&files, &look.options(reader))).map_err(|e| refused(&e))?;
     let asked = planning::asked(&survey.needs).map_err(unplanned)?;
     let (plan, dropped) = match engine {
         None => (planning::plan(&survey.needs).map_err(unplanned)?, Vec::new()),
@@ -87,7 +94,7 @@ fn needed(plan: Plan, survey: &Survey) -> (Plan, Vec<String>) {
 }
 
 /// The files that arguments name: a file, a folder with all below it, or a pattern.
-fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+pub(super) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut all = Vec::new();
     for path in paths {
         if path.is_dir() {
@@ -125,7 +132,7 @@ fn matching(pattern: &str) -> Result<Vec<PathBuf>, Failure> {
 }
 
 /// All scenes that were refused, one a line; the machine's fault only if it is all of them.
-fn refused(errors: &[SceneError]) -> Failure {
+pub(super) fn refused(errors: &[SceneError]) -> Failure {
     let io = errors.iter().all(|e| matches!(e.fault, Fault::Io { .. }));
     let lines: Vec<String> = errors.iter().map(ToString::to_string).collect();
     Failure::new(if io { Exit::Io } else { Exit::Input }, lines.join("\nerror: "))

@@ -120,4 +120,14 @@ impl Space {
             Space::Srgb => libm::powf((code + 0.055) / 1.055, 2.4),
         }
     }
+
+    /// A linear number as a code.
+    #[must_use]
+    pub fn encode(self, linear: f64) -> f64 {
+        match self {
+            Space::Linear => linear,
+            Space::Srgb if linear <= 0.003_130_8 => linear * 12.92,
+            Space::Srgb => 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055,
+        }
+    }
 }

@@ -13,6 +13,8 @@ pub mod golden;
 mod in_memory;
 mod manifest;
 pub mod map;
+#[cfg(feature = "scene")]
+pub mod materials;
 pub mod memory;
 mod size;
 pub mod suggest;

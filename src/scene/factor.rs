@@ -146,6 +146,8 @@ pub struct Property {
     pub key: &'static str,
     /// Least and largest channel; the same twice for a number.
     pub factor: [f64; 2],
+    /// The channels of a colour; the same three times for a number.
+    pub values: [f64; 3],
     /// The texture that multiplies it.
     pub texture: Option<Sampled>,
     /// Does an animation change it?

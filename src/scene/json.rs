@@ -177,20 +177,19 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// The least and the largest of R, G and B of a colour member, or its default.
-    pub(super) fn channels(&self, factor: &Factor) -> Result<[f64; 2], Fault> {
-        let Some(value) = self.get_here(factor.key)? else { return Ok([factor.default; 2]) };
+    /// R, G and B of a colour member, or its default.
+    pub(super) fn channels(&self, factor: &Factor) -> Result<[f64; 3], Fault> {
+        let Some(value) = self.get_here(factor.key)? else { return Ok([factor.default; 3]) };
         let colour = Node { value, parent: Some((self, Step::Key(factor.key))) };
         if colour.len()? != factor.channels {
             let four = factor.channels == 4;
             return Err(colour.wrong(if four { "an array of 4 numbers" } else { "an array of 3 numbers" }));
         }
-        let mut range = [f64::INFINITY, 0.0_f64];
-        for channel in colour.items()?.take(3) {
-            let v = channel.number(factor.allowed)?;
-            range = [range[0].min(v), range[1].max(v)];
+        let mut all = [0.0; 3];
+        for (to, channel) in all.iter_mut().zip(colour.items()?) {
+            *to = channel.number(factor.allowed)?;
         }
-        Ok(range)
+        Ok(all)
     }
 
     /// As [`Node::get`], for keys that live shorter than the document.

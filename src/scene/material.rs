@@ -99,14 +99,26 @@ impl Material {
         self.extensions.iter().find(|e| e.name == name)
     }
 
-    /// A number of an extension, or of the base layer if `extension` is empty; the default where the extension is not there.
+    /// A number as it was read, of an extension or, if `extension` is empty, of the base layer.
     #[must_use]
-    pub fn range(&self, extension: &str, key: &str, look: &Look) -> Interval {
+    pub fn property(&self, extension: &str, key: &str) -> Option<&Property> {
         let properties = match extension {
             "" => Some(&self.core),
             name => self.extension(name).map(|e| &e.properties),
         };
-        let found = properties.and_then(|all| all.iter().find(|p| p.key == key));
+        properties?.iter().find(|p| p.key == key)
+    }
+
+    /// Is its colour constant, whatever lights it (`KHR_materials_unlit`)?
+    #[must_use]
+    pub fn is_unlit(&self) -> bool {
+        self.asks(|asks| matches!(asks, Asks::Unlit))
+    }
+
+    /// The values of a number of an extension, or of the base layer if `extension` is empty; the default where the extension is not there.
+    #[must_use]
+    pub fn range(&self, extension: &str, key: &str, look: &Look) -> Interval {
+        let found = self.property(extension, key);
         let factors = if extension.is_empty() {
             CORE
         } else {
@@ -127,10 +139,11 @@ impl Material {
         self.extensions.iter().any(|e| extension::find(&e.name).is_some_and(|x| what(&x.asks)))
     }
 
-    /// The textures that multiply its numbers.
-    pub(super) fn sampled(&self) -> impl Iterator<Item = Sampled> + '_ {
+    /// The textures that multiply its numbers, and those of its colours.
+    pub(super) fn sampled(&self, colours: bool) -> impl Iterator<Item = Sampled> + '_ {
         let all = self.core.iter().chain(self.extensions.iter().flat_map(|e| &e.properties));
-        all.filter(|p| !p.colour && !p.animated && p.factor[1] != 0.0).filter_map(|p| p.texture)
+        all.filter(move |p| (colours || !p.colour) && !p.animated && p.factor[1] != 0.0)
+            .filter_map(|p| p.texture)
     }
 }
 
@@ -200,6 +213,7 @@ fn default(factor: &Factor) -> Property {
     Property {
         key: factor.key,
         factor: [factor.default; 2],
+        values: [factor.default; 3],
         texture: None,
         animated: false,
         allowed: reach(factor.allowed),
@@ -231,17 +245,23 @@ fn read_factors(
 ) -> Result<Vec<Property>, Fault> {
     let mut all = Vec::with_capacity(factors.len());
     for factor in factors {
-        let value = if factor.channels > 1 {
+        let values = if factor.channels > 1 {
             node.channels(factor)?
         } else {
-            [node.factor(factor.key, factor.default, factor.allowed)?; 2]
+            [node.factor(factor.key, factor.default, factor.allowed)?; 3]
         };
+        let ends = [
+            values.iter().copied().fold(f64::INFINITY, f64::min),
+            values.iter().copied().fold(0.0, f64::max),
+        ];
+        // a number may be negative; a colour is not
+        let ends = if factor.channels > 1 { ends } else { [values[0]; 2] };
         let mut sampled = None;
         if let Some((key, channel)) = factor.texture {
             sampled = texture(node, key, tables)?.map(|image| Sampled { image, channel });
         }
         let animated = animated.contains(&format!("{prefix}/{}", factor.key));
-        all.push(Property { factor: value, texture: sampled, animated, ..default(factor) });
+        all.push(Property { factor: ends, values, texture: sampled, animated, ..default(factor) });
     }
     Ok(all)
 }

@@ -67,6 +67,8 @@ pub struct Limits {
     pub json_values: usize,
     /// Size of one `data:` URI after decoding, in bytes. Default 128 MiB.
     pub data_uri_bytes: u64,
+    /// Are images of colours in [`Scene::images`], too? They decide over no table. Default false.
+    pub colours: bool,
 }
 
 impl Default for Limits {
@@ -77,6 +79,7 @@ impl Default for Limits {
             json_bytes: 256 * MIB,
             json_values: 2_000_000,
             data_uri_bytes: 128 * MIB,
+            colours: false,
         }
     }
 }

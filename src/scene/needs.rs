@@ -351,7 +351,8 @@ impl Collector {
         let (base, named) = (base::asks(&subject), base_names(material));
         let layers: Vec<_> = material.extensions.iter().map(|e| (e, layer(&subject, e))).collect();
         // one line an image, however many of its channels count
-        let images: BTreeMap<_, _> = material.sampled().map(|sampled| (sampled.image, sampled)).collect();
+        let images: BTreeMap<_, _> =
+            material.sampled(false).map(|sampled| (sampled.image, sampled)).collect();
         for (image, sampled) in images {
             if let Some(why) = look.unknown(sampled) {
                 let what = image.map_or_else(|| "texture".to_owned(), |i| format!("images[{i}]"));

@@ -18,6 +18,7 @@ use crate::math::shown::show;
 const KEPT: &[&str] = &[
     "animations",
     "asset",
+    "bufferViews",
     "buffers",
     "extensions",
     "extensionsRequired",
@@ -34,8 +35,8 @@ const SKIPPED: &[&[&str]] = &[
     &["animations", "*", "samplers"],
     &["asset", "extensions"],
     &["extensions", "*"],
+    &["bufferViews", "*", "extensions"],
     &["meshes", "*", "extensions"],
-    &["meshes", "*", "primitives", "*", "attributes"],
     &["meshes", "*", "primitives", "*", "targets"],
     &["meshes", "*", "weights"],
     &["nodes", "*", "children"],

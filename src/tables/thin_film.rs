@@ -59,7 +59,7 @@ pub static INFO: TableInfo = TableInfo {
     model: ModelUse::None,
     params: &[
         Param::number("n2", "n_2", "index of the film", [1.0, 10.0], Preset::Value(1.33)),
-        Param::number("n3", "n_3", "index below the film, real part", [0.0, 100.0], Preset::Value(1.5)),
+        Param::number("n3", "n_3", "index below the film, real part", [0.0, 1e5], Preset::Value(1.5)),
         Param::number("k3", "k_3", "extinction coefficient below the film", [0.0, 100.0], Preset::Value(0.0)),
         Param::number("orders", "m", "of layout series: orders summed", [1.0, 100.0], Preset::Value(2.0)),
     ],
@@ -80,6 +80,9 @@ fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
 struct Table {
     mu: usize,
     film: usize,
+    /// Axes of the indices, where they are swept.
+    n2: Option<usize>,
+    n3: Option<usize>,
     substrate: Film,
     /// Of the series; none integrates the spectrum.
     orders: Option<u32>,
@@ -90,7 +93,7 @@ struct Table {
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     let [n2, n3, k3] = spec.params.numbers(["n2", "n3", "k3"])?;
     let orders = spec.params.number("orders")?;
-    if n3 + k3 <= 0.0 {
+    if n3 + k3 <= 0.0 && spec.axis("n3").is_none() {
         let why = "n3 and k3 are both 0: nothing can be".to_owned();
         return Err(crate::models::ParamError::Together { model: spec.kind.id, why }.into());
     }
@@ -98,6 +101,8 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     Ok(Box::new(Table {
         mu: spec.coordinate("mu")?,
         film: spec.coordinate("film")?,
+        n2: spec.axis("n2"),
+        n3: spec.axis("n3"),
         substrate: Film { n2, n3, k3, d_nm: 0.0 },
         orders: series.then(|| orders.round() as u32),
         spectrum: spectrum::daylight(),
@@ -106,7 +111,9 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
 
 impl Baker for Table {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
-        let film = Film { d_nm: at[self.film], ..self.substrate };
+        let swept = |axis: Option<usize>, fixed: f64| axis.map_or(fixed, |i| at[i]);
+        let (n2, n3) = (swept(self.n2, self.substrate.n2), swept(self.n3, self.substrate.n3));
+        let film = Film { n2, n3, d_nm: at[self.film], ..self.substrate };
         let mu = at[self.mu];
         if let Some(orders) = self.orders {
             let mut value = [0.0; MAX_CHANNELS];

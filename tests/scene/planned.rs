@@ -163,7 +163,7 @@ fn shaders_that_clamp_and_widen_are_followed() {
     assert_eq!(range(&needs, "ggx", "roughness"), [0.4, 0.6]);
 }
 
-fn write_png(path: &Path, width: u32, texels: &[[u8; 3]]) {
+pub(super) fn write_png(path: &Path, width: u32, texels: &[[u8; 3]]) {
     let mut encoder =
         png::Encoder::new(std::fs::File::create(path).unwrap(), width, texels.len() as u32 / width);
     encoder.set_color(png::ColorType::Rgb);
@@ -171,9 +171,13 @@ fn write_png(path: &Path, width: u32, texels: &[[u8; 3]]) {
 }
 
 fn textured(uri: &str) -> String {
+    textured_with(uri, r#""roughnessFactor": 0.8, "#)
+}
+
+pub(super) fn textured_with(uri: &str, factors: &str) -> String {
     format!(
         r#"{{ "asset": {{ "version": "2.0" }}, "images": [{{ "uri": "{uri}" }}], "textures": [{{ "source": 0 }}],
-            "materials": [{{ "pbrMetallicRoughness": {{ "roughnessFactor": 0.8, "metallicRoughnessTexture": {{ "index": 0 }} }} }}],
+            "materials": [{{ "pbrMetallicRoughness": {{ {factors}"metallicRoughnessTexture": {{ "index": 0 }} }} }}],
             "meshes": [{{ "primitives": [{{ "attributes": {{ "NORMAL": 1 }}, "material": 0 }}] }}] }}"#
     )
 }
@@ -236,4 +240,50 @@ fn several_scenes_make_one_plan() {
     std::fs::write(&broken, "{}").unwrap();
     let faults = survey(&[files[0].clone(), broken], &SurveyOptions::default()).unwrap_err();
     assert_eq!(faults.len(), 1);
+}
+
+/// The acceptance scenes and values that lie beside the project, where they are at hand.
+#[test]
+fn acceptance_scenes_are_planned_as_their_list_says() {
+    let Some(shared) = std::env::var_os("BRDFBAKE_SHARED") else {
+        eprintln!("SKIPPED: BRDFBAKE_SHARED is not set, so no acceptance scenes were planned");
+        return;
+    };
+    let folder = Path::new(&shared).join("cases/scenes");
+    let found = |name: &str| surveyed(&folder.join(name), &SurveyOptions::default()).needs;
+    let tables =
+        |needs: &Needs| needs.needs.iter().map(|n| n.table.to_string()).collect::<Vec<_>>().join(" ");
+    for (name, want) in [
+        ("p01-constant.gltf", "ggx"),
+        ("p02-mirror-glass.gltf", ""),
+        ("p03-rough-glass.gltf", "ggx glass"),
+        ("p04-sheen.gltf", "ggx sheen"),
+        ("p05-film.gltf", "ggx film"),
+        ("p06-anisotropic.gltf", "ggx anisotropic"),
+        ("p07-nothing-real.gltf", "ggx"),
+        ("p08-points.gltf", ""),
+        ("p09-textured.gltf", "ggx"),
+    ] {
+        let needs = found(name);
+        assert_eq!(tables(&needs), want, "{name}");
+        assert!(!needs.in_doubt(), "{name}: {:?}", needs.left_out);
+        plan(&needs).unwrap();
+    }
+    assert_eq!(range(&found("p01-constant.gltf"), "ggx", "roughness"), [0.25, 0.6]);
+    // printed to five digits; the second one is 0.075824 by the formula
+    let f0 = range(&found("p03-rough-glass.gltf"), "ggx", "f0");
+    assert!((f0[0] - 0.020_059).abs() < 5e-7 && (f0[1] - 0.075_826).abs() < 5e-6, "{f0:?}");
+    close(range(&found("p09-textured.gltf"), "ggx", "roughness"), [0.141_176_470_588, 0.282_352_941_176]);
+    close(
+        range(&found("inner/u02-godot-escape.gltf"), "ggx", "roughness"),
+        [0.176_470_588_235, 0.352_941_176_471],
+    );
+    assert!(found("inner/u01-blender-parent.gltf").in_doubt());
+    let root = SurveyOptions { root: Some(folder.clone()), ..SurveyOptions::default() };
+    let inside = surveyed(&folder.join("inner/u01-blender-parent.gltf"), &root).needs;
+    close(range(&inside, "ggx", "roughness"), [0.176_470_588_235, 0.352_941_176_471]);
+    let helmet =
+        surveyed(&Path::new(&shared).join("assets/DamagedHelmet.glb"), &SurveyOptions::default()).needs;
+    assert_eq!(range(&helmet, "ggx", "roughness"), [0.0, 1.0]);
+    assert!(helmet.needs[0].asked_by[0].why.contains("256 levels"), "{}", helmet.needs[0].asked_by[0].why);
 }

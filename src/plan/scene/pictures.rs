@@ -1,8 +1,8 @@
 //! The images of a scene, read for the levels of their channels: from the scene's own file, or from files below a root.
 
 use crate::encode::read as pictures;
-use crate::picture::{self, Levels, PictureError};
-use crate::scene::{Image, Look, Scene, Source, UriError, resolve};
+use crate::picture::{self, Levels, Picture, PictureError};
+use crate::scene::{Image, Look, Scene, Source, resolve};
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -55,16 +55,41 @@ impl Pictures {
     }
 
     fn levels(&self, image: &Image, folder: &Path) -> Result<[Levels; 4], String> {
+        self.with(image, folder, |bytes| self.decode(bytes))
+    }
+
+    /// All of a picture of a scene in `folder`.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    pub fn picture(&self, scene: &Scene, image: usize, folder: &Path) -> Result<Picture, String> {
+        let found = scene.images.iter().find(|i| i.index == image);
+        let image = found.ok_or_else(|| format!("images[{image}] is not read"))?;
+        self.with(image, folder, |bytes| {
+            // the header is looked at first
+            picture::levels(bytes, |needed| if needed > self.limit { Err(self.limit) } else { Ok(()) })
+                .and_then(|_| picture::read_bytes(bytes))
+                .map_err(|e| e.to_string())
+        })
+    }
+
+    /// What is made of the bytes of an image.
+    fn with<T>(
+        &self,
+        image: &Image,
+        folder: &Path,
+        make: impl FnOnce(&[u8]) -> Result<T, String>,
+    ) -> Result<T, String> {
         match &image.source {
             Source::Missing(why) => Err(why.clone()),
-            Source::Embedded(bytes) => self.decode(bytes),
+            Source::Embedded(bytes) => make(bytes),
             Source::File { names, part } => {
                 let shown = crate::math::shown::show(&names.join("/"));
                 let said = |why: String| format!("{shown}: {why}");
                 let root = self.root.as_deref().unwrap_or(folder);
-                let path = resolve(folder, root, names).map_err(|e| said(refusal(&e)))?;
+                let path = resolve(folder, root, names).map_err(|e| said(e.to_string()))?;
                 let bytes = file(&path, *part).map_err(said)?;
-                self.decode(&bytes).map_err(said)
+                make(&bytes).map_err(said)
             }
         }
     }
@@ -79,10 +104,6 @@ impl Pictures {
             other => other.to_string(),
         })
     }
-}
-
-fn refusal(error: &UriError) -> String {
-    error.to_string()
 }
 
 /// Memory that is given back when the picture is gone.
