@@ -4,7 +4,7 @@ use super::{Exit, Failure, output};
 use crate::math::figures::short;
 use crate::pipeline::pool;
 use crate::plan::Plan;
-use crate::plan::scene::{self as planning, Asked, ScenePlanError, Survey, SurveyOptions};
+use crate::plan::scene::{self as planning, Asked, Kept, ScenePlanError, Survey, SurveyOptions};
 use crate::recipe::Engine;
 use crate::scene::{Fault, LeftOut, LeftOutKind, Need, Reader, SceneError};
 use std::path::{Path, PathBuf};
@@ -21,6 +21,9 @@ pub struct Look {
     /// Tables go so far beyond the roughness of the scenes, on either side.
     #[arg(long, value_name = "ROUGHNESS", default_value = "0", value_parser = margin)]
     margin: f64,
+    /// Keep in this folder what was found in scenes, and read only those that changed since.
+    #[arg(long, value_name = "DIR")]
+    keep: Option<PathBuf>,
 }
 
 impl Look {
@@ -44,6 +47,8 @@ pub(super) struct Job {
     pub(super) plan: Plan,
     /// Tables of the engine that the scenes do not need.
     pub(super) dropped: Vec<String>,
+    /// Scenes that were read; of the others it was known what they need.
+    pub(super) read: usize,
 }
 
 impl Job {
@@ -67,8 +72,13 @@ pub(super) fn job(
         widens: roughness.is_some_and(|r| r.widens),
         margin: look.margin,
     };
-    let survey =
-        pool(jobs)?.install(|| planning::survey(&files, &look.options(reader))).map_err(|e| refused(&e))?;
+    let options = look.options(reader);
+    let mut kept = look.keep.as_deref().map_or_else(Kept::default, |folder| Kept::read(folder, &options));
+    let found = pool(jobs)?.install(|| planning::survey_with(&files, &options, &mut kept));
+    let (survey, read) = found.map_err(|e| refused(&e))?;
+    if let Some(folder) = &look.keep {
+        kept.write(folder).map_err(|e| Failure::io(folder.display(), &e))?;
+    }
     let asked = planning::asked(&survey.needs).map_err(unplanned)?;
     let (plan, dropped) = match engine {
         None => (planning::plan(&survey.needs).map_err(unplanned)?, Vec::new()),
@@ -79,7 +89,7 @@ pub(super) fn job(
     };
     let plan = plan.unwrap_or_else(|| Plan::nothing(planning::NAME));
     let reasons = planning::reasons(&survey, &asked);
-    Ok(Job { survey, asked, plan: plan.because(reasons), dropped })
+    Ok(Job { survey, asked, plan: plan.because(reasons), dropped, read })
 }
 
 /// The tables of an engine that serve what the scenes need.
@@ -157,7 +167,9 @@ pub(super) fn tell(job: &Job) {
         [one] => format!("scene {}", crate::math::shown::show(&one.file)),
         all => count(all.len(), "scene"),
     };
-    output::talk(&format!("{name}: {}, {} read", count(materials, "material"), count(images, "picture")));
+    let known = survey.scenes.len() - job.read;
+    let known = if known > 0 { format!(", {known} known from before") } else { String::new() };
+    output::talk(&format!("{name}: {}, {}{known}", count(materials, "material"), count(images, "picture")));
     for need in &survey.needs.needs {
         tell_need(need, survey.scenes.len() > 1);
     }

@@ -157,6 +157,15 @@ pub struct Needs {
 }
 
 impl Needs {
+    /// Gives the scene's file another name, wherever it is named.
+    pub fn rename(&mut self, from: &str, to: &str) {
+        let askers = self.needs.iter_mut().flat_map(|n| &mut n.asked_by).map(|a| &mut a.material);
+        let others = self.left_out.iter_mut().flat_map(|l| &mut l.materials);
+        for material in askers.chain(others).filter(|m| m.file == from) {
+            to.clone_into(&mut material.file);
+        }
+    }
+
     /// Is something needed and not baked, or not known?
     #[must_use]
     pub fn in_doubt(&self) -> bool {

@@ -3,7 +3,7 @@
 
 use super::scene_of;
 use brdfbake::plan::Plan;
-use brdfbake::plan::scene::{Survey, SurveyOptions, asked, plan, survey};
+use brdfbake::plan::scene::{Kept, Survey, SurveyOptions, asked, plan, survey, survey_with};
 use brdfbake::scene::{LeftOutKind, Needs, Reader, analyse};
 use std::path::{Path, PathBuf};
 
@@ -240,6 +240,37 @@ fn several_scenes_make_one_plan() {
     std::fs::write(&broken, "{}").unwrap();
     let faults = survey(&[files[0].clone(), broken], &SurveyOptions::default()).unwrap_err();
     assert_eq!(faults.len(), 1);
+}
+
+#[test]
+fn what_was_found_is_kept_until_a_file_changes() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.gltf");
+    write_png(&folder.path().join("mr.png"), 1, &[[0, 51, 0]]);
+    std::fs::write(&file, textured("mr.png")).unwrap();
+    let (files, options, shelf) = ([file.clone()], SurveyOptions::default(), folder.path().join("kept"));
+    let run = |options: &SurveyOptions| {
+        let mut kept = Kept::read(&shelf, options);
+        let (found, read) = survey_with(&files, options, &mut kept).unwrap();
+        kept.write(&shelf).unwrap();
+        (range(&found.needs, "ggx", "roughness"), read, found)
+    };
+    let (first, second) = (run(&options), run(&options));
+    close(first.0, [0.16, 0.16]);
+    assert_eq!((first.1, second.1), (1, 0));
+    assert_eq!(first.2, second.2);
+    // another size of the picture, and another time of the scene
+    write_png(&folder.path().join("mr.png"), 2, &[[0, 51, 0], [0, 255, 0]]);
+    let third = run(&options);
+    close(third.0, [0.16, 0.8]);
+    assert_eq!(third.1, 1);
+    std::fs::write(&file, textured_with("mr.png", r#""roughnessFactor": 0.5, "#)).unwrap();
+    close(run(&options).0, [0.1, 0.5]);
+    // other options find other things
+    let widened = Reader { widens: true, ..Reader::default() };
+    let other = run(&SurveyOptions { reader: widened, ..SurveyOptions::default() });
+    assert_eq!(other.1, 1);
+    close(other.0, [0.1, 1.0]);
 }
 
 /// The acceptance scenes and values that lie beside the project, where they are at hand.

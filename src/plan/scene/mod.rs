@@ -23,6 +23,7 @@ mod film;
 mod fuzz;
 mod ggx;
 mod glass;
+mod kept;
 mod phase;
 mod pictures;
 mod reasons;
@@ -37,9 +38,10 @@ use crate::scene::{Need, Needs};
 use axes::Draft;
 use serde::Serialize;
 
+pub use kept::Kept;
 pub use pictures::{PIXELS, Pictures, bytes_of};
 pub use reasons::reasons;
-pub use survey::{Survey, SurveyOptions, Surveyed, survey};
+pub use survey::{Survey, SurveyOptions, Surveyed, survey, survey_with};
 
 /// Why the needs of a scene make no plan.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -94,6 +94,17 @@ impl Pictures {
         }
     }
 
+    /// The files that the images of a scene in `folder` lie in, as far as they may be read.
+    #[must_use]
+    pub fn files(&self, scene: &Scene, folder: &Path) -> Vec<PathBuf> {
+        let root = self.root.as_deref().unwrap_or(folder);
+        let file = |image: &Image| match &image.source {
+            Source::File { names, .. } => resolve(folder, root, names).ok(),
+            _ => None,
+        };
+        scene.images.iter().filter_map(file).collect()
+    }
+
     fn decode(&self, bytes: &[u8]) -> Result<[Levels; 4], String> {
         let mut taken = Taken { from: self, bytes: 0 };
         if bytes.starts_with(KTX2) {

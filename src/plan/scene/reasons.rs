@@ -10,8 +10,7 @@ pub fn reasons(survey: &Survey, asked: &[Asked]) -> Json {
         .scenes
         .iter()
         .map(|s| {
-            let warnings: Vec<String> = s.warnings.iter().map(ToString::to_string).collect();
-            json!({ "file": s.file, "blake3": s.hash, "materials": s.materials, "images": s.images, "warnings": warnings })
+            json!({ "file": s.file, "blake3": s.hash, "materials": s.materials, "images": s.images, "warnings": s.warnings })
         })
         .collect();
     let tables: Vec<Json> = asked

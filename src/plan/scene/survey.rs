@@ -1,8 +1,10 @@
 //! Scenes to needs: files read in parallel, each with its pictures, joined in the order in which they were named.
 
 use super::Pictures;
-use crate::scene::{self, Joined, Limits, Needs, Reader, SceneError, Warning};
+use super::kept::{self, Kept};
+use crate::scene::{self, Joined, Limits, Needs, Reader, SceneError};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// How scenes are looked at.
@@ -23,7 +25,7 @@ impl Default for SurveyOptions {
 }
 
 /// A scene that was read.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Surveyed {
     /// Its path below the folder that all scenes share, `/` between names.
     pub file: String,
@@ -34,7 +36,7 @@ pub struct Surveyed {
     /// Number of images that were looked at.
     pub images: usize,
     /// What is odd about it.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<String>,
 }
 
 /// What scenes need, together.
@@ -51,38 +53,65 @@ pub struct Survey {
 /// # Errors
 /// Every scene that is refused, in order; then nothing is planned.
 pub fn survey(files: &[PathBuf], options: &SurveyOptions) -> Result<Survey, Vec<SceneError>> {
+    survey_with(files, options, &mut Kept::default()).map(|(survey, _)| survey)
+}
+
+/// As [`survey`], with what earlier runs found; what is new is kept. Says also how many files were read.
+///
+/// # Errors
+/// As [`survey`].
+pub fn survey_with(
+    files: &[PathBuf],
+    options: &SurveyOptions,
+    kept: &mut Kept,
+) -> Result<(Survey, usize), Vec<SceneError>> {
     let names = names(files);
     let pictures = Pictures::new(options.root.clone(), options.pixels);
-    let one = |(path, name): (&PathBuf, &String)| look(path, name, &pictures, options.reader);
-    let read: Vec<_> = files.par_iter().zip(&names).map(one).collect();
-    let mut faults = Vec::new();
+    let known: &Kept = kept;
+    let one = |path: &PathBuf| match known.find(path) {
+        Some(entry) => Ok(Found { all: (entry.scene.clone(), entry.needs.clone()), new: None }),
+        None => look(path, &pictures, options.reader),
+    };
+    let read: Vec<_> = files.par_iter().map(one).collect();
+    let (mut faults, mut count) = (Vec::new(), 0);
     let mut scenes = Vec::with_capacity(files.len());
     let mut joined = Joined::default();
-    for result in read {
+    for ((result, path), name) in read.into_iter().zip(files).zip(names) {
         match result {
-            Ok((scene, needs)) => {
+            Ok(Found { all, new }) => {
+                if let Some((before, touched)) = new {
+                    count += 1;
+                    kept.keep(path, before, touched, &all);
+                }
+                let (mut scene, mut needs) = all;
+                needs.rename(&scene.file, &name);
+                scene.file = name;
                 scenes.push(scene);
                 joined.add(needs);
             }
             Err(fault) => faults.push(fault),
         }
     }
-    if faults.is_empty() { Ok(Survey { scenes, needs: joined.needs() }) } else { Err(faults) }
+    if faults.is_empty() { Ok((Survey { scenes, needs: joined.needs() }, count)) } else { Err(faults) }
 }
 
-fn look(
-    path: &Path,
-    name: &str,
-    pictures: &Pictures,
-    reader: Reader,
-) -> Result<(Surveyed, Needs), SceneError> {
-    let (mut scene, hash) = scene::read_hashed(path, &Limits::default())?;
-    name.clone_into(&mut scene.file_name);
+/// What was found in a scene; if it was read now, when its file had changed, and its pictures.
+struct Found {
+    all: (Surveyed, Needs),
+    new: Option<(Option<(u64, u64)>, Vec<PathBuf>)>,
+}
+
+fn look(path: &Path, pictures: &Pictures, reader: Reader) -> Result<Found, SceneError> {
+    let before = kept::stamp(path);
+    let (scene, hash) = scene::read_hashed(path, &Limits::default())?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let look = pictures.look(&scene, folder);
     let needs = scene::analyse_with(&scene, &look, reader);
+    let touched = pictures.files(&scene, folder);
     let (materials, images) = (scene.materials.len(), scene.images.len());
-    Ok((Surveyed { file: scene.file_name, hash, materials, images, warnings: scene.warnings }, needs))
+    let warnings = scene.warnings.iter().map(ToString::to_string).collect();
+    let all = (Surveyed { file: scene.file_name, hash, materials, images, warnings }, needs);
+    Ok(Found { all, new: Some((before, touched)) })
 }
 
 /// The paths below the folder that all of them share: no more of the machine than tells them apart.
