@@ -284,6 +284,120 @@ fn a_scene_bakes_what_its_materials_ask_for() {
     assert_eq!(names, ["manifest.json"]);
 }
 
+/// A scene of one material.
+fn one_material(path: &Path, rough: &str, more: &str) {
+    let text = format!(
+        r#"{{ "asset": {{ "version": "2.0" }}, "materials": [{{ "name": "tin\u001b[2J", "pbrMetallicRoughness":
+            {{ "roughnessFactor": {rough}, "metallicFactor": 0 }}, "extensions": {{ {more} }} }}],
+            "meshes": [{{ "primitives": [{{ "attributes": {{ "NORMAL": 1 }}, "material": 0 }}] }}] }}"#
+    );
+    std::fs::write(path, text).unwrap();
+}
+
+#[test]
+fn stale_tables_are_named_and_the_manifest_says_who_asked() {
+    let dir = folder();
+    let (scene, target) = (dir.path().join("a.gltf"), dir.path().join("out"));
+    let bake =
+        |more: &[&str]| brdfbake(&[&["bake", "--scene", text(&scene), "-o", text(&target)], more].concat());
+    one_material(&scene, "0.5", "");
+    let o = bake(&[]);
+    assert_eq!(code(&o), 0, "{}", err(&o));
+    assert!(!err(&o).contains('\u{1b}'), "{}", err(&o));
+    let manifest = || -> serde_json::Value {
+        serde_json::from_slice(&std::fs::read(target.join("manifest.json")).unwrap()).unwrap()
+    };
+    let first = manifest();
+    assert_eq!(first["scenes"]["files"][0]["file"], "a.gltf");
+    assert_eq!(first["scenes"]["needs"][0]["asked_by"][0]["material"]["index"], 0);
+    assert!(first.get("stale").is_none());
+    // nothing is needed now: what lies there does not belong to it
+    one_material(&scene, "0", "");
+    let o = bake(&[]);
+    assert_eq!(code(&o), 0, "{}", err(&o));
+    let second = manifest();
+    assert_eq!(second["tables"].as_array().unwrap().len(), 0);
+    assert_eq!(second["stale"], serde_json::json!(["ggx-albedo.exr", "ggx-dfg.exr"]));
+    // and baked again they are stale no more
+    one_material(&scene, "0.5", "");
+    assert_eq!(code(&bake(&[])), 0);
+    assert!(manifest().get("stale").is_none());
+}
+
+#[test]
+fn strict_refuses_scenes_that_ask_for_what_is_not_known() {
+    let dir = folder();
+    let (scene, target) = (dir.path().join("a.gltf"), dir.path().join("out"));
+    one_material(&scene, "0.5", r#""ACME_materials_glitter": {}"#);
+    let args = ["bake", "--scene", text(&scene), "-o", text(&target)];
+    let o = brdfbake(&[&args[..], &["--strict"]].concat());
+    assert_eq!(code(&o), 4, "{}", err(&o));
+    assert!(!target.exists());
+    assert_eq!(code(&brdfbake(&["plan", text(&scene), "--strict"])), 4);
+    assert_eq!(code(&brdfbake(&["plan", text(&scene)])), 0);
+}
+
+#[test]
+fn an_engine_bakes_as_many_of_its_files_as_the_scene_needs() {
+    let dir = folder();
+    let scene = dir.path().join("a.gltf");
+    one_material(&scene, "0.5", "");
+    let o = brdfbake(&["plan", text(&scene), "--engine", "bevy", "--json"]);
+    assert_eq!(code(&o), 0, "{}", err(&o));
+    let told: serde_json::Value = serde_json::from_slice(&o.stdout).unwrap();
+    let names: Vec<&str> =
+        told["planned"].as_array().unwrap().iter().map(|t| t["table"].as_str().unwrap()).collect();
+    // its table for the split sum, and none for area lights
+    assert!(!names.is_empty() && names.iter().all(|n| !n.contains("ltc")), "{names:?}");
+    assert!(
+        told["dropped"].as_array().unwrap().iter().any(|n| n.as_str().unwrap().contains("ltc")),
+        "{told}"
+    );
+    // a mirror is read at 0.089 by its shaders
+    one_material(&scene, "0", "");
+    let o = brdfbake(&["plan", text(&scene), "--engine", "bevy", "--json"]);
+    let told: serde_json::Value = serde_json::from_slice(&o.stdout).unwrap();
+    assert_eq!(told["needs"][0]["ranges"]["roughness"]["lo"], 0.089);
+}
+
+#[test]
+fn folders_and_patterns_name_scenes() {
+    let dir = folder();
+    std::fs::create_dir(dir.path().join("below")).unwrap();
+    one_material(&dir.path().join("a.gltf"), "0.5", "");
+    one_material(&dir.path().join("below/b.gltf"), "0.25", "");
+    let pattern = dir.path().join("**/*.gltf");
+    for scenes in [text(dir.path()), text(&pattern)] {
+        let o = brdfbake(&["plan", scenes, "--json"]);
+        assert_eq!(code(&o), 0, "{}", err(&o));
+        let told: serde_json::Value = serde_json::from_slice(&o.stdout).unwrap();
+        let files: Vec<&str> =
+            told["files"].as_array().unwrap().iter().map(|f| f["file"].as_str().unwrap()).collect();
+        assert_eq!(files, ["a.gltf", "below/b.gltf"], "{scenes}");
+    }
+    let o = brdfbake(&["plan", text(&dir.path().join("*.glb"))]);
+    assert_eq!(code(&o), 3, "{}", err(&o));
+}
+
+#[test]
+fn materials_are_judged_by_the_command() {
+    let dir = folder();
+    let scene = dir.path().join("a.gltf");
+    one_material(&scene, "0.01", "");
+    let o = brdfbake(&["check", text(&scene), "--json"]);
+    assert_eq!(code(&o), 0, "{}", err(&o));
+    let told: serde_json::Value = serde_json::from_slice(&o.stdout).unwrap();
+    let rules: Vec<&str> =
+        told["scenes"][0]["broken"].as_array().unwrap().iter().map(|b| b["rule"].as_str().unwrap()).collect();
+    assert_eq!(rules, ["albedo", "bright-base", "smooth-half", "smooth-float"]);
+    assert_eq!(code(&brdfbake(&["check", text(&scene), "--strict"])), 4);
+    let off: Vec<String> = rules.iter().map(|r| format!("--rule={r}=off")).collect();
+    let off: Vec<&str> = off.iter().map(String::as_str).collect();
+    assert_eq!(code(&brdfbake(&[&["check", text(&scene), "--strict"], &off[..]].concat())), 0);
+    let o = brdfbake(&["check", text(&scene), "--rule", "albdo=2"]);
+    assert!(code(&o) == 2 && err(&o).contains("albedo"), "{}", err(&o));
+}
+
 #[test]
 fn an_output_folder_that_cannot_be_written_is_found_before_the_work() {
     let dir = folder();

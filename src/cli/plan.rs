@@ -45,7 +45,7 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
         output::data(&all.to_string())?;
     } else {
         scene::tell(&job);
-        let lines = job.plan.tables.iter().zip(&costs).map(|(t, c)| line(t, c));
+        let lines = job.plan.tables.iter().zip(&costs).map(|(t, c)| line(&job, t, c));
         let mut text = lines.collect::<Vec<_>>().join("\n");
         let (bytes, seconds) = costs.iter().fold((0, 0.0), |(b, s), c| (b + c.bytes, s + c.seconds));
         if costs.len() > 1 {
@@ -86,15 +86,17 @@ fn table(table: &PlannedTable, cost: &Cost) -> Json {
     })
 }
 
-fn line(table: &PlannedTable, cost: &Cost) -> String {
+fn line(job: &scene::Job, table: &PlannedTable, cost: &Cost) -> String {
     let spec = &table.bound.spec;
     let axis = |a: &crate::grid::Axis| {
         let [lo, hi] = a.domain;
         format!("{} [{lo}, {hi}] x {}", a.quantity.id, a.len)
     };
     let axes = spec.grid.axes().iter().map(axis).collect::<Vec<_>>().join(", ");
-    let fixed: Vec<String> =
-        table.asked.request.params.iter().map(|(id, value)| format!("{id} = {value}")).collect();
+    // those that the scene has set, not those that are left as they are
+    let given = job.asked.iter().find(|a| a.request.name == table.name());
+    let fixed = given.into_iter().flat_map(|a| &a.request.request.params);
+    let fixed: Vec<String> = fixed.map(|(id, value)| format!("{id} = {value}")).collect();
     let fixed = if fixed.is_empty() { String::new() } else { format!("; {}", fixed.join(", ")) };
     format!(
         "{}: {} over {axes}{fixed}; at most {}, about {}",

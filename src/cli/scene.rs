@@ -54,7 +54,7 @@ pub(super) struct Job {
 impl Job {
     /// Is something needed and not baked, cut, or not known?
     pub(super) fn in_doubt(&self) -> bool {
-        self.survey.needs.in_doubt() || self.asked.iter().any(|a| !a.notes.is_empty())
+        self.survey.needs.in_doubt() || self.asked.iter().any(|a| a.notes.iter().any(|n| n.seen))
     }
 }
 

@@ -38,7 +38,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-pub use asks::{Answer, Subject};
+pub use asks::{Answer, Subject, dielectric_f0};
 pub use error::{Fault, SceneError};
 pub use extension::{
     ANISOTROPIC, AREA_LIGHT, Asks, COAT, EXTENSIONS, Extension, FILM, FUZZ, GGX, GLASS, PHASE, ROUGH_DIFFUSE,

@@ -164,8 +164,11 @@ fn shaders_that_clamp_and_widen_are_followed() {
 }
 
 pub(super) fn write_png(path: &Path, width: u32, texels: &[[u8; 3]]) {
-    let mut encoder =
-        png::Encoder::new(std::fs::File::create(path).unwrap(), width, texels.len() as u32 / width);
+    let mut encoder = png::Encoder::new(
+        std::fs::File::create(path).unwrap(),
+        width,
+        u32::try_from(texels.len()).unwrap() / width,
+    );
     encoder.set_color(png::ColorType::Rgb);
     encoder.write_header().unwrap().write_image_data(texels.as_flattened()).unwrap();
 }

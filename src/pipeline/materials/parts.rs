@@ -3,7 +3,8 @@
 //! Base, glTF 2.0 Appendix B.3: metal and dielectric mixed by metalness, `E_metal = scale rho + bias`,
 //! `E_dielectric = rho (1 - f0) (1 - S) + f0 scale + bias`, where `S(mu) = int (1 - wo.wh)^5 mu_i / pi dwi` is what Schlick's factor
 //! takes from a Lambertian lobe. `KHR_materials_sheen` puts `s E_s + (1 - max(s) E_s) E` on it, and `KHR_materials_clearcoat`
-//! `c E_c + (1 - c F_c(mu)) E`.
+//! `c F_c(mu) E_c + (1 - c F_c(mu)) E`, `F_c` being Schlick's factor of index 1.5 at the view and `E_c` the
+//! albedo of the coat without it (its `fresnel_coat` mixes by the view cosine).
 
 use super::Texel;
 use crate::grid::{Axis, Quantity, Table, Texel as Place, Warp};
@@ -11,6 +12,7 @@ use crate::integrate::gauss;
 use crate::pipeline::{InMemoryError, bake_until};
 use crate::plan::TableRequest;
 use crate::tables::spec::Request;
+use crate::terms::schlick;
 use serde_json::json;
 use std::f64::consts::PI;
 
@@ -86,7 +88,7 @@ fn schlick_lost(mu: f64) -> f64 {
         rule.integrate(0.0, PI, |phi| {
             let cosine = mu * mu_i + sine * sine_i * libm::cos(phi);
             let half = ((1.0 + cosine) / 2.0).max(0.0).sqrt();
-            (1.0 - half).powi(5)
+            schlick::weight(half)
         })
     });
     // twice for the other half of the circle, half for dx = 2 mu_i dmu_i
@@ -94,6 +96,11 @@ fn schlick_lost(mu: f64) -> f64 {
 }
 
 /// Value of channel `c` of a table of views and rows, between rows.
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "not negative, and below the length of an axis"
+)]
 fn row(table: &Table, view: usize, at: f64, c: usize) -> f64 {
     let axes = table.grid.axes();
     let (Some(axis), n) = (axes.last(), table.channels.len()) else { return 0.0 };
@@ -133,8 +140,8 @@ impl Stack<'_> {
                 let base = dielectric + t.metallic * (metal - dielectric);
                 let clothed = t.sheen_colour[channel] * sheen + (1.0 - t.sheen * sheen) * base;
                 let all = if with_coat && t.coat > 0.0 {
-                    let fresnel = 0.04 + 0.96 * (1.0 - mu).powi(5);
-                    t.coat * (0.04 * coat[0] + coat[1]) + (1.0 - t.coat * fresnel) * clothed
+                    let fresnel = 0.04 + 0.96 * schlick::weight(mu);
+                    t.coat * fresnel * (coat[0] + coat[1]) + (1.0 - t.coat * fresnel) * clothed
                 } else {
                     clothed
                 };

@@ -2,7 +2,7 @@
 
 use crate::picture::{Picture, Space};
 use crate::plan::scene::Pictures;
-use crate::scene::{Channel, Look, Material, Scene};
+use crate::scene::{Channel, Look, Material, Scene, dielectric_f0};
 use std::path::Path;
 
 /// The numbers of a material at a texel.
@@ -196,6 +196,5 @@ fn dielectric(material: &Material) -> f64 {
     const SPECULAR: &str = "KHR_materials_specular";
     let value = |extension: &str, key: &str| material.range(extension, key, &Look::none()).hi;
     let ior = value("KHR_materials_ior", "ior");
-    let f0 = if ior == 0.0 { 1.0 } else { ((ior - 1.0) / (ior + 1.0)).powi(2) };
-    (f0 * value(SPECULAR, "specularColorFactor")).min(1.0) * value(SPECULAR, "specularFactor")
+    (dielectric_f0(ior) * value(SPECULAR, "specularColorFactor")).min(1.0) * value(SPECULAR, "specularFactor")
 }

@@ -19,5 +19,5 @@ fn requests(need: &Need) -> Vec<Draft> {
     let table = Draft::new("anisotropic-albedo", "albedo").channels(&["e"]).tolerance(1e-4);
     let table = table.even("phi", AZIMUTHS).even("alpha_x", WIDTHS).even("alpha_y", WIDTHS);
     let table = table.along("phi", quarter).over(need, "alpha_x").over(need, "alpha_y").without("alpha");
-    vec![["alpha_x", "alpha_y"].iter().fold(table, |t, id| t.within(id, [1e-4, 1.0], NEAR_MIRROR))]
+    vec![["alpha_x", "alpha_y"].iter().fold(table, |t, id| t.near(id, [1e-4, 1.0], NEAR_MIRROR))]
 }

@@ -14,7 +14,7 @@ const LEAST: f64 = 0.031_622_776_601_683_794;
 
 fn requests(need: &Need) -> Vec<Draft> {
     let table = |name: &str, kind: &str| {
-        Draft::new(name, kind).over(need, "roughness").within("roughness", [LEAST, 1.0], NO_WIDTH)
+        Draft::new(name, kind).over(need, "roughness").near("roughness", [LEAST, 1.0], NO_WIDTH)
     };
     vec![table("area-light-matrix", "ltc-matrix"), table("area-light-magnitude", "ltc-magnitude")]
 }

@@ -85,8 +85,17 @@ impl Draft {
         self
     }
 
-    /// A range is cut to what the model is good for: its lookups clamp, and the plan says so. A single value is kept if it is inside.
-    pub(super) fn within(mut self, id: &'static str, allowed: [f64; 2], why: &'static str) -> Draft {
+    /// A range is cut to what the model is good for: its lookups clamp, the plan says so, and the picture is another one.
+    pub(super) fn within(self, id: &'static str, allowed: [f64; 2], why: &'static str) -> Draft {
+        self.cut(id, allowed, why, true)
+    }
+
+    /// A range is cut where nobody sees it: its lookups clamp, and the plan says so.
+    pub(super) fn near(self, id: &'static str, allowed: [f64; 2], why: &'static str) -> Draft {
+        self.cut(id, allowed, why, false)
+    }
+
+    fn cut(mut self, id: &'static str, allowed: [f64; 2], why: &'static str, seen: bool) -> Draft {
         for (quantity, range) in &mut self.over {
             if *quantity != id || (range.lo >= allowed[0] && range.hi <= allowed[1]) {
                 continue;
@@ -95,7 +104,7 @@ impl Draft {
             let covered = asked.map(|v| v.clamp(allowed[0], allowed[1]));
             *range =
                 Range { lo: covered[0], hi: covered[1], values: range.value().map(|_| vec![covered[0]]) };
-            self.notes.push(Note { quantity: id, asked, covered, why });
+            self.notes.push(Note { quantity: id, asked, covered, why, seen });
         }
         self
     }
@@ -140,6 +149,7 @@ impl Draft {
 }
 
 /// An axis of a kind over a part of its domain, with no fewer texels a step than it has there.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 1 to the length of an axis")]
 fn trimmed(axis: &Axis, quantity: &'static Quantity, range: &Range) -> Axis {
     let base = [range.lo, range.hi].map(|v| quantity.to_base(v));
     let domain = axis.quantity.interval_from_base(base);

@@ -3,16 +3,15 @@
 use super::axes::Draft;
 use super::ggx::rough;
 use super::{ALBEDO_TOLERANCE, Family};
-use crate::scene::{COAT, Need, Range};
+use crate::scene::{COAT, Need, Range, dielectric_f0};
 
 pub(super) const FAMILY: Family =
     Family { id: COAT, requests, serves: &[("dfg", None), ("albedo", Some("ggx"))] };
 
 fn requests(need: &Need) -> Vec<Draft> {
-    let f0 = |ior: f64| if ior == 0.0 { 1.0 } else { ((ior - 1.0) / (ior + 1.0)).powi(2) };
     let range = need.ranges.get("ior").map_or(Range { lo: 0.04, hi: 0.04, values: None }, |ior| {
-        let values = ior.values.as_ref().map(|all| all.iter().map(|n| f0(*n)).collect());
-        let ends = [f0(ior.lo), f0(ior.hi)];
+        let values = ior.values.as_ref().map(|all| all.iter().map(|n| dielectric_f0(*n)).collect());
+        let ends = [dielectric_f0(ior.lo), dielectric_f0(ior.hi)];
         Range { lo: ends[0].min(ends[1]), hi: ends[0].max(ends[1]), values }
     });
     let albedo = Draft::new("coat-albedo", "albedo").tolerance(ALBEDO_TOLERANCE);

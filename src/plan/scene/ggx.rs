@@ -36,5 +36,5 @@ fn requests(need: &Need) -> Vec<Draft> {
 
 /// Over the roughness of the need, as far down as axes follow the dip beside the mirror.
 pub(super) fn rough(draft: Draft, need: &Need) -> Draft {
-    draft.over(need, "roughness").within("roughness", [LEAST_ROUGHNESS, 1.0], NEAR_MIRROR)
+    draft.over(need, "roughness").near("roughness", [LEAST_ROUGHNESS, 1.0], NEAR_MIRROR)
 }

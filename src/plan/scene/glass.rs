@@ -28,11 +28,11 @@ fn requests(need: &Need) -> Vec<Draft> {
     });
     let table =
         Draft::new("glass-albedo", "albedo").model("ggx-glass").layout("both-sides-r-t").tolerance(1e-4);
-    let table = table.over(need, "roughness").within("roughness", [LEAST, 1.0], NEAR_SMOOTH);
+    let table = table.over(need, "roughness").near("roughness", [LEAST, 1.0], NEAR_SMOOTH);
     let ior = need.ranges.get("ior").cloned();
     let table = table.even("eta", indices);
     vec![match ior {
-        Some(ior) => table.along("eta", ior).within("eta", [1.01, 100.0], NO_INTERFACE),
+        Some(ior) => table.along("eta", ior).near("eta", [1.01, 100.0], NO_INTERFACE),
         None => table,
     }]
 }

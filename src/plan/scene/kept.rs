@@ -18,7 +18,7 @@ const FILE: &str = "brdfbake-scenes.json";
 const VERSION: u32 = 1;
 
 /// Size in bytes, and time of change in nanoseconds.
-type Stamp = (u64, u64);
+pub(super) type Stamp = (u64, u64);
 
 /// What was found in a scene.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -111,6 +111,8 @@ pub struct Note {
     pub covered: [f64; 2],
     /// Why.
     pub why: &'static str,
+    /// Is what it makes of the rest another picture? If not, nobody sees it.
+    pub seen: bool,
 }
 
 impl std::fmt::Display for Note {

@@ -11,5 +11,5 @@ const NARROWEST: &str = "beyond it the peak is narrower than the table's first s
 
 fn requests(need: &Need) -> Vec<Draft> {
     let table = Draft::new("phase-function", "phase-function").even("g", 33).over(need, "g");
-    vec![table.within("g", [-0.999, 0.999], NARROWEST)]
+    vec![table.near("g", [-0.999, 0.999], NARROWEST)]
 }

@@ -95,10 +95,13 @@ pub fn survey_with(
     if faults.is_empty() { Ok((Survey { scenes, needs: joined.needs() }, count)) } else { Err(faults) }
 }
 
-/// What was found in a scene; if it was read now, when its file had changed, and its pictures.
+/// Of a scene that was read now: size and time of change of its file before, and the files of its pictures.
+type New = (Option<kept::Stamp>, Vec<PathBuf>);
+
+/// What was found in a scene.
 struct Found {
     all: (Surveyed, Needs),
-    new: Option<(Option<(u64, u64)>, Vec<PathBuf>)>,
+    new: Option<New>,
 }
 
 fn look(path: &Path, pictures: &Pictures, reader: Reader) -> Result<Found, SceneError> {

@@ -94,8 +94,7 @@ impl Subject<'_> {
         const SPECULAR: &str = "KHR_materials_specular";
         let weight = self.range(SPECULAR, "specularFactor");
         let colour = self.range(SPECULAR, "specularColorFactor");
-        let dielectric = |ior: f64| if ior == 0.0 { 1.0 } else { ((ior - 1.0) / (ior + 1.0)).powi(2) };
-        let tinted = self.ior().map(dielectric).rising(colour, |f0, c| (f0 * c).min(1.0));
+        let tinted = self.ior().map(dielectric_f0).rising(colour, |f0, c| (f0 * c).min(1.0));
         let below = tinted.rising(weight, |f0, w| f0 * w);
         let metal = self.range("", "baseColorFactor");
         let part = self.metallic();
@@ -111,6 +110,13 @@ impl Subject<'_> {
             spread: changes.unwrap_or(Spread::Constant),
         }
     }
+}
+
+/// Reflectance of a dielectric at normal incidence, ((n - 1) / (n + 1))²; 1 for the index 0 (`KHR_materials_ior`).
+#[must_use]
+pub fn dielectric_f0(ior: f64) -> f64 {
+    let root = (ior - 1.0) / (ior + 1.0);
+    if ior == 0.0 { 1.0 } else { root * root }
 }
 
 /// Is a lobe of this roughness a mirror everywhere? Its reflectance is Fresnel's formula.
