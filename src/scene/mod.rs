@@ -18,6 +18,7 @@
 //! Source: [glTF 2.0](https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html).
 
 mod asks;
+mod collect;
 mod document;
 mod embedded;
 mod error;
@@ -39,6 +40,7 @@ use std::io::Read;
 use std::path::Path;
 
 pub use asks::{Answer, Subject, dielectric_f0};
+pub use collect::{Joined, analyse, analyse_with};
 pub use error::{Fault, SceneError};
 pub use extension::{
     ANISOTROPIC, AREA_LIGHT, Asks, COAT, EXTENSIONS, Extension, FILM, FUZZ, GGX, GLASS, PHASE, ROUGH_DIFFUSE,
@@ -48,10 +50,7 @@ pub use factor::{Channel, Factor, Interval, Property, Sampled, Spread};
 pub use image::{Image, Look, Source};
 pub use json::{ASYMMETRY, Allowed, IOR, NOT_NEGATIVE, UNIT};
 pub use material::{CORE, Material, MaterialExtension, State};
-pub use needs::{
-    AskedBy, Id, Joined, LeftOut, LeftOutKind, MOST_VALUES, MaterialRef, Need, Needs, Range, analyse,
-    analyse_with,
-};
+pub use needs::{AskedBy, Id, LeftOut, LeftOutKind, MOST_VALUES, MaterialRef, Need, Needs, Range};
 pub use reader::Reader;
 pub use uri::{Checked, LONGEST_URI, Resolved, UriError, check_uri, resolve, resolve_uri};
 

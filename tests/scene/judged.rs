@@ -1,12 +1,18 @@
 //! Rules over the texels of materials. Albedos are those of the model `gltf`, which is integrated by itself.
 
 use super::planned::{textured_with, write_png};
+use crate::tolerance::SINGLE_ANGLES;
 use brdfbake::cancel::Cancel;
 use brdfbake::pipeline::materials::{Broken, Judging, Parts, RULES, Review, Stack, Texel, review};
 use brdfbake::tables::spec::Request;
 use serde_json::json;
 use std::path::Path;
 use std::sync::OnceLock;
+
+/// Rows of roughness are read linearly between a hundred of them.
+const ROWS: f64 = 2e-3;
+/// Tables of the parts are baked to 1e-5, and averages are read as linearly.
+const TABLES: f64 = 1e-4;
 
 fn parts() -> &'static Parts {
     static PARTS: OnceLock<Parts> = OnceLock::new();
@@ -62,8 +68,7 @@ fn the_albedo_of_the_stack_is_that_of_the_model() {
     for texel in seen {
         let ours = Stack { texel: &texel, parts: parts() }.largest_albedo(true);
         let theirs = model(&texel);
-        // rows of roughness are read linearly
-        assert!((ours - theirs).abs() < 2e-3, "{ours} against {theirs}: {texel:?}");
+        assert!((ours - theirs).abs() < ROWS, "{ours} against {theirs}: {texel:?}");
     }
     // a white smooth dielectric reflects nearly twice at grazing: its parts are weighed by different factors
     assert!(Stack { texel: &grey(1.0, 0.1, 0.0), parts: parts() }.largest_albedo(true) > 1.5);
@@ -74,7 +79,7 @@ fn a_sheen_takes_from_below_what_it_reflects() {
     // the model takes the larger of both directions' albedos: no more is left than by the view's alone
     let texel = Texel { sheen: 0.8, sheen_colour: [0.8; 3], ..grey(0.5, 0.6, 0.0) };
     let (ours, theirs) = (Stack { texel: &texel, parts: parts() }.largest_albedo(true), model(&texel));
-    assert!(ours >= theirs - 1e-4 && ours - theirs < 0.05, "{ours} against {theirs}");
+    assert!(ours >= theirs - TABLES && ours - theirs < 0.05, "{ours} against {theirs}");
 }
 
 fn reviewed(folder: &Path, text: &str) -> Review {
@@ -107,7 +112,7 @@ fn texels_are_counted_and_the_worst_is_named() {
     assert_eq!((found.materials, found.texels, found.unknown.len()), (1, 8, 0));
     let half = broken(&found, "half-metal").unwrap();
     assert_eq!((half.count, half.texel), (1, [2, 0]));
-    assert!((half.value - 127.0 / 255.0).abs() < 1e-6, "{}", half.value);
+    assert!((half.value - 127.0 / 255.0).abs() < SINGLE_ANGLES, "{}", half.value);
     let smooth = broken(&found, "smooth-float").unwrap();
     assert_eq!((smooth.count, smooth.share, smooth.texel), (2, 0.25, [1, 0]));
     assert!(broken(&found, "dark-base").is_none() && broken(&found, "bright-base").is_none());
@@ -144,7 +149,7 @@ fn rough_metals_lose_energy_and_unknown_pictures_are_told() {
     let rough = reviewed(folder.path(), &text("1"));
     // separable GGX at alpha = 1: E(mu) = 2 (1 - ln 2) / (1 + mu), E_avg = 4 (1 - ln 2)^2 = 0.376630
     let lost = broken(&rough, "lost-energy").unwrap();
-    assert!((lost.value - (1.0 - 0.376_630)).abs() < 1e-4, "{}", lost.value);
+    assert!((lost.value - (1.0 - 0.376_630)).abs() < TABLES, "{}", lost.value);
     assert!(broken(&reviewed(folder.path(), &text("0.2")), "lost-energy").is_none());
     let missing = reviewed(folder.path(), &textured_with("none.png", ""));
     assert_eq!((missing.unknown.len(), missing.texels), (1, 0));

@@ -18,6 +18,8 @@ pub(super) struct Draft {
     even: Vec<(&'static str, usize)>,
     /// Axes of the kind that are left away.
     without: Vec<&'static str>,
+    /// Most texels of an axis.
+    longest: Vec<(&'static str, usize)>,
     notes: Vec<Note>,
 }
 
@@ -30,6 +32,7 @@ impl Draft {
             over: Vec::new(),
             even: Vec::new(),
             without: Vec::new(),
+            longest: Vec::new(),
             notes: Vec::new(),
         }
     }
@@ -85,6 +88,12 @@ impl Draft {
         self
     }
 
+    /// With no more than so many texels along an axis: tables of many axes are large, and their integrals take long.
+    pub(super) fn longest(mut self, id: &'static str, texels: usize) -> Draft {
+        self.longest.push((id, texels));
+        self
+    }
+
     /// A range is cut to what the model is good for: its lookups clamp, the plan says so, and the picture is another one.
     pub(super) fn within(self, id: &'static str, allowed: [f64; 2], why: &'static str) -> Draft {
         self.cut(id, allowed, why, true)
@@ -137,6 +146,10 @@ impl Draft {
                 if let Some(quantity) = Quantity::find(id).filter(|_| missing) {
                     axes.push(Axis::new(quantity, *len, Texel::Endpoint));
                 }
+            }
+            for axis in &mut axes {
+                let most = self.longest.iter().find(|(id, _)| *id == axis.quantity.id);
+                axis.len = most.map_or(axis.len, |(_, most)| axis.len.min(*most));
             }
             uncouple(&mut axes);
             self.request.request.axes = Some(axes);

@@ -24,10 +24,10 @@ fn requests(need: &Need) -> Vec<Draft> {
     let split = Draft::new("ggx-dfg", "dfg");
     // F0 = F90 = 1: the two parts are only ever added
     let split = if white("f0") && white("f90") { split.channels(&["dfg.total"]) } else { split };
-    let mut all =
-        vec![rough(split, need), rough(Draft::new("ggx-albedo", "albedo").tolerance(ALBEDO_TOLERANCE), need)];
-    // at one roughness the average is one number, and no table
+    let mut all = vec![rough(split, need)];
+    // at one roughness E is the sum of two numbers of a row, and its average one number
     if need.ranges.get("roughness").is_none_or(|r| r.value().is_none()) {
+        all.push(rough(Draft::new("ggx-albedo", "albedo").tolerance(ALBEDO_TOLERANCE), need));
         let average = Draft::new("ggx-average-albedo", "average-albedo").tolerance(ALBEDO_TOLERANCE);
         all.push(average.over(need, "roughness"));
     }

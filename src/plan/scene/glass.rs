@@ -28,6 +28,7 @@ fn requests(need: &Need) -> Vec<Draft> {
     });
     let table =
         Draft::new("glass-albedo", "albedo").model("ggx-glass").layout("both-sides-r-t").tolerance(1e-4);
+    let table = table.longest("mu", 32).longest("roughness", 24);
     let table = table.over(need, "roughness").near("roughness", [LEAST, 1.0], NEAR_SMOOTH);
     let ior = need.ranges.get("ior").cloned();
     let table = table.even("eta", indices);
