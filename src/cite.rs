@@ -128,6 +128,8 @@ cites! {
     KHR_CLEARCOAT = "KHR_materials_clearcoat", "Khronos Group: KHR_materials_clearcoat", 2020, "https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos/KHR_materials_clearcoat";
     /// Its extension for sheen.
     KHR_SHEEN = "KHR_materials_sheen", "Khronos Group: KHR_materials_sheen", 2020, "https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos/KHR_materials_sheen";
+    /// Its archived extension for specular and gloss, with the conversion that was published beside it.
+    KHR_SPECULAR_GLOSSINESS = "KHR_materials_pbrSpecularGlossiness", "Khronos Group: KHR_materials_pbrSpecularGlossiness, example convert-between-workflows", 2017, "https://github.com/KhronosGroup/glTF/pull/1106";
     /// Knuth, sums without rounding error.
     KNUTH_1969 = "Knuth1969", "Knuth: The Art of Computer Programming, volume 2, Seminumerical Algorithms", 1969, "https://www-cs-faculty.stanford.edu/~knuth/taocp.html";
     /// Kulla and Conty, energy compensation in production.

@@ -9,7 +9,9 @@
 mod bad;
 mod judged;
 mod planned;
+mod spec_gloss;
 mod uri;
+mod write;
 
 use std::path::{Path, PathBuf};
 

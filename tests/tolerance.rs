@@ -184,6 +184,10 @@ pub(crate) const AXIS_STEP: f64 = 1e-6;
 pub(crate) const LOBE_DIGITS: f64 = 1e-4;
 /// Six printed digits.
 pub(crate) const LOBE_DIGITS_SIX: f64 = 2e-6;
+/// F0 of a material whose colours are codes of 8 bits, by that of the colours themselves: half a code of sRGB and a little.
+pub(crate) const F0_OF_CODES: f64 = 3e-3;
+/// Five printed digits, of which the last is not rounded.
+pub(crate) const FIVE_DIGITS: f64 = 6e-6;
 /// Nine printed digits.
 pub(crate) const LOBE_DIGITS_NINE: f64 = 1e-8;
 /// A midpoint sum of 1500 x 1500 slopes of an integrand with a kink.

@@ -2,8 +2,9 @@
 
 use super::limits::Limits;
 use super::progress::{self, Format};
-use super::{Exit, Failure, engine, output, scene, suggest};
+use super::{Exit, Failure, engine, output, scene, scene_write, suggest};
 use crate::cancel::Cancel;
+use crate::pipeline::write_scene::Bake;
 use crate::pipeline::{self, PipelineError, Settings};
 use crate::plan::Plan;
 use crate::recipe::{self, LoadError};
@@ -34,6 +35,8 @@ pub struct Args {
     #[arg(short, long, value_name = "DIR", default_value = "brdfbake-out")]
     out: PathBuf,
     #[command(flatten)]
+    write: scene_write::SceneWrite,
+    #[command(flatten)]
     limits: Limits,
     /// Print nothing but errors.
     #[arg(short, long)]
@@ -53,11 +56,23 @@ pub struct Args {
 /// What `--strict` says of scenes.
 const DOUBT: &str = "something that the scene needs is not baked, is cut, or is not known; nothing was written, since `strict` is set";
 
+impl Args {
+    fn settings(&self) -> Settings {
+        Settings { strict: self.strict, ..self.limits.settings(&self.out) }
+    }
+
+    /// Is there talk on stderr?
+    fn talks(&self) -> bool {
+        !self.quiet && self.message_format == Format::Human
+    }
+}
+
 /// Runs it.
 ///
 /// # Errors
 /// [`Failure`] with the exit code of the cause; the output folder is then as it was.
 pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
+    let mut written = scene_write::check(&args.write, &args.look, &args.scene)?;
     let engine = args.engine.as_deref().map(engine::plan).transpose()?;
     if let (Some((engine, plan)), Some(error)) = (&engine, args.suggest) {
         return suggest::run(
@@ -83,12 +98,13 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
             Format::Human if args.quiet => {}
             Format::Human => scene::tell(&job),
         }
+        scene_write::serve(&mut written, &job, entry.is_some());
         if args.strict && job.in_doubt() {
             return Err(Failure::new(Exit::Failed, DOUBT));
         }
         (entry, job.plan)
     };
-    let settings = Settings { strict: args.strict, ..args.limits.settings(&args.out) };
+    let settings = args.settings();
     if args.dry_run {
         pipeline::check(&plan, &settings)?;
         output::data(&plan.files().join("\n"))?;
@@ -99,10 +115,12 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     reporter.finish()?;
     match done {
         Ok(outcome) => {
-            let talks = !args.quiet && args.message_format == Format::Human;
-            if let Some(engine) = engine.filter(|_| talks) {
+            if let Some(engine) = engine.filter(|_| args.talks()) {
                 engine::report(engine, &outcome);
             }
+            let any = !outcome.manifest.tables.is_empty();
+            let bake = any.then_some(Bake { manifest: &outcome.manifest, folder: &args.out });
+            scene_write::run(&written, bake, &settings, cancel, args.talks())?;
             Ok(Exit::Done)
         }
         Err(error) => {

@@ -3,6 +3,7 @@
 pub mod albedo;
 pub mod bake;
 pub mod check;
+pub mod convert;
 pub mod describe;
 pub mod diff;
 mod engine;
@@ -22,6 +23,7 @@ pub mod plan;
 pub mod plot;
 pub mod progress;
 pub mod scene;
+mod scene_write;
 mod suggest;
 pub mod verify;
 
@@ -54,6 +56,8 @@ enum Verb {
     Diff(diff::Args),
     /// Filter normal and roughness maps: levels of lobes fitted to what they stand for, with their errors.
     Map(Box<map::Args>),
+    /// Convert specular-glossiness materials of a glTF scene to metallic-roughness, with the error of each.
+    Convert(convert::Args),
     /// Check that an output folder holds what its manifest says.
     Verify(verify::Args),
     /// Compare a fresh bake with committed outputs, or commit them.
@@ -88,6 +92,7 @@ pub fn run(cli: Cli, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         Verb::Inspect(args) => inspect::run(&args, cancel),
         Verb::Diff(args) => diff::run(&args, cancel),
         Verb::Map(args) => map::run(&args, cancel),
+        Verb::Convert(args) => convert::run(&args, cancel),
         Verb::Verify(args) => verify::run(&args),
         Verb::Golden(args) => golden::run(&args, cancel),
         Verb::Eval(args) => eval::run(&args, cancel),

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 pub struct Look {
     /// Read pictures of a scene below this folder; without it those that lie outside the scene's own folder are unknown.
     #[arg(long, value_name = "DIR")]
-    root: Option<PathBuf>,
+    pub(super) root: Option<PathBuf>,
     /// Largest picture that is read, in pixels: four bytes of memory each. Larger ones are unknown.
     #[arg(long, value_name = "N", default_value_t = planning::PIXELS, value_parser = clap::value_parser!(u64).range(1..=1 << 32))]
     pixels: u64,

@@ -21,6 +21,10 @@ impl Encoder for Csv {
         "csv"
     }
 
+    fn media_type(&self) -> &'static str {
+        "text/csv"
+    }
+
     fn storages(&self) -> &'static [Storage] {
         &[Storage::Double, Storage::Float, Storage::Half]
     }

@@ -63,6 +63,10 @@ impl Encoder for Dds {
         "dds"
     }
 
+    fn media_type(&self) -> &'static str {
+        "image/vnd-ms.dds"
+    }
+
     fn storages(&self) -> &'static [Storage] {
         texels::ON_GPUS
     }

@@ -43,6 +43,10 @@ impl Encoder for Exr {
         "exr"
     }
 
+    fn media_type(&self) -> &'static str {
+        "image/x-exr"
+    }
+
     fn storages(&self) -> &'static [Storage] {
         &[Storage::Half, Storage::Float]
     }

@@ -31,6 +31,10 @@ impl Encoder for Hdr {
         "hdr"
     }
 
+    fn media_type(&self) -> &'static str {
+        "image/vnd.radiance"
+    }
+
     fn storages(&self) -> &'static [Storage] {
         &[Storage::Rgbe]
     }

@@ -59,6 +59,10 @@ impl Encoder for Ktx2 {
         "ktx2"
     }
 
+    fn media_type(&self) -> &'static str {
+        "image/ktx2"
+    }
+
     fn storages(&self) -> &'static [Storage] {
         texels::ON_GPUS
     }

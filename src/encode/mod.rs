@@ -95,6 +95,10 @@ pub trait Encoder: Debug + Send + Sync {
     fn id(&self) -> &'static str;
     /// File name extension, without the dot.
     fn extension(&self) -> &'static str;
+    /// Media type of its files.
+    fn media_type(&self) -> &'static str {
+        "application/octet-stream"
+    }
     /// What it can store.
     fn storages(&self) -> &'static [Storage];
     /// Options that it takes.

@@ -38,6 +38,10 @@ impl Encoder for Png {
         "png"
     }
 
+    fn media_type(&self) -> &'static str {
+        "image/png"
+    }
+
     fn storages(&self) -> &'static [Storage] {
         &[Storage::Unorm16, Storage::Unorm8, Storage::Rgbd]
     }

@@ -31,6 +31,10 @@ impl Encoder for Text {
         true
     }
 
+    fn media_type(&self) -> &'static str {
+        "text/plain"
+    }
+
     fn storages(&self) -> &'static [Storage] {
         &[Storage::Half, Storage::Float, Storage::Double]
     }

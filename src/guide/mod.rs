@@ -49,6 +49,7 @@ topics! {
     formats
     engines
     scenes
+    writing
     maps
     conventions
     accuracy

@@ -14,6 +14,7 @@ mod nodes;
 pub mod reflected;
 pub mod rules;
 pub mod signs;
+pub mod spec_gloss;
 pub mod surface;
 
 pub use filter::{FilterError, Level, Objective, Settings, Texel, filter};

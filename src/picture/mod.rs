@@ -8,12 +8,14 @@ mod levels;
 mod pyramid;
 mod read;
 mod resample;
+mod write;
 
 pub use levels::{Levels, levels};
 pub use pyramid::{Coverage, count_levels, halved, shrink};
 pub(crate) use read::Samples;
 pub use read::{MAGIC, read_bytes};
 pub use resample::Wrap;
+pub use write::write_png;
 
 /// Most pixels of a picture: 8192 x 8192.
 pub const MAX_PIXELS: usize = 1 << 26;

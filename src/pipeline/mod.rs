@@ -22,6 +22,8 @@ mod table;
 mod texels;
 mod threads;
 pub mod transaction;
+#[cfg(feature = "scene")]
+pub mod write_scene;
 
 pub use crate::plan::MANIFEST;
 pub use event::{Event, Extremum, Progress, Silent};

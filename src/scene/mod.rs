@@ -32,6 +32,7 @@ mod needs;
 mod parse;
 mod reader;
 mod uri;
+pub mod write;
 
 use crate::math::shown::show;
 use std::fmt;

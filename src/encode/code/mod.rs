@@ -154,6 +154,10 @@ impl<S: Syntax> Encoder for Code<S> {
         self.0.extension()
     }
 
+    fn media_type(&self) -> &'static str {
+        "text/plain"
+    }
+
     fn storages(&self) -> &'static [Storage] {
         let all = &[Storage::Float, Storage::Half, Storage::Double];
         if self.0.has_double() { all } else { &all[..2] }

@@ -117,12 +117,20 @@ impl Step<'_> {
                 (paths.new_file(n), paths.old_file(n), paths.target(n))
             }
         };
+        fs::create_dir_all(old.parent().unwrap_or(&paths.staging))?;
         match self {
             Step::TakeAway(_) | Step::Save(_) if exists(&old)? || !exists(&new)? => Ok(()),
             Step::TakeAway(_) => none_is_fine(atomic::rename(&target, &old)),
             Step::Save(_) => none_is_fine(save(&target, &old)),
-            Step::Place(_) if exists(&new)? => atomic::rename(&new, &target),
-            Step::Unplace(_) if !exists(&new)? => none_is_fine(atomic::rename(&target, &new)),
+            Step::Place(_) if exists(&new)? => {
+                fs::create_dir_all(target.parent().unwrap_or(&paths.folder))?;
+                atomic::rename(&new, &target)
+            }
+            Step::Unplace(_) if !exists(&new)? => {
+                none_is_fine(atomic::rename(&target, &new))?;
+                leave(&target, &paths.folder);
+                Ok(())
+            }
             Step::Restore(_) if exists(&old)? => atomic::rename(&old, &target),
             _ => Ok(()),
         }
@@ -178,7 +186,7 @@ impl Journal {
             return Err(fault(format!("it is of schema {}, not {SCHEMA}", journal.schema)));
         }
         // a name that leads out of the folder was not written by this program
-        match journal.files.iter().find(|e| !is_plain(&e.name)) {
+        match journal.files.iter().find(|e| !is_inside(&e.name)) {
             Some(entry) => Err(fault(format!("`{}` is no file name", entry.name))),
             None => Ok(Some(journal)),
         }
@@ -305,6 +313,21 @@ fn exists(path: &Path) -> io::Result<bool> {
 pub(in crate::pipeline) fn is_plain(name: &str) -> bool {
     let mut parts = Path::new(name).components();
     matches!((parts.next(), parts.next()), (Some(std::path::Component::Normal(n)), None) if n == name)
+}
+
+/// Names of folders and a file, with `/` between them; none leads up or elsewhere.
+pub(in crate::pipeline) fn is_inside(name: &str) -> bool {
+    name.split('/').all(is_plain)
+}
+
+/// Removes the folders above a file that is gone, if nothing is in them.
+fn leave(file: &Path, folder: &Path) {
+    let above = file.ancestors().skip(1).take_while(|p| *p != folder && p.starts_with(folder));
+    for path in above {
+        if fs::remove_dir(path).is_err() {
+            return;
+        }
+    }
 }
 
 /// The names in a folder must survive a power cut. Some file systems cannot do that; the files are whole anyway.

@@ -15,6 +15,9 @@
 //!   done. The next run that holds the lock does the rest of it before it bakes, or puts the old files back where that
 //!   cannot be done; what a run left that had not come so far is removed.
 //!
+//! Names of files may lead into folders inside the output folder (`textures/wood.png`). A transaction without a manifest
+//! ([`Transaction::commit_files`]) keeps the other promises.
+//!
 //! Not promised: that files which another bake wrote into the folder, and this one does not write, are removed; that a
 //! power cut spares a file system which loses what was synchronised; anything on a file system without locks, where the
 //! run is refused.
@@ -130,7 +133,11 @@ impl<'a> Transaction<'a> {
             return Err(TransactionError::Twice { name: name.to_owned(), other: name.to_owned() });
         }
         let _hold = self.cancel.hold();
-        let write = || File::create(self.paths.new_file(name))?.write_all(bytes);
+        let path = self.paths.new_file(name);
+        let write = || {
+            fs::create_dir_all(path.parent().unwrap_or(&self.paths.new_folder()))?;
+            File::create(&path)?.write_all(bytes)
+        };
         write().map_err(|source| error::write(&self.paths.target(name), source))?;
         self.staged.push(Entry::of(name, bytes));
         Ok(())
@@ -148,6 +155,15 @@ impl<'a> Transaction<'a> {
     /// [`TransactionError`]; but for [`TransactionError::Stuck`] every file is as it was.
     pub fn commit(mut self, manifest: &[u8]) -> Result<Written, TransactionError> {
         self.stage(MANIFEST, manifest)?;
+        self.commit_files()
+    }
+
+    /// Puts all files in place, and no manifest: for files that are no bake of their own, such as a scene. A manifest that the folder
+    /// has stays.
+    ///
+    /// # Errors
+    /// As [`Transaction::commit`].
+    pub fn commit_files(mut self) -> Result<Written, TransactionError> {
         let mut result = Written::default();
         for entry in &mut self.staged {
             entry.replace = !entry.is_at(&self.paths.target(&entry.name));

@@ -22,6 +22,7 @@ pub fn check(folder: &Path, names: &[String]) -> Result<(), TransactionError> {
     check_folder(folder)?;
     for name in names {
         let path = folder.join(name);
+        check_folder(path.parent().unwrap_or(folder))?;
         match atomic::obstacle(&path) {
             Ok(None) => {}
             Ok(Some(what)) => return Err(TransactionError::InTheWay { path, what }),
