@@ -21,6 +21,10 @@ pub enum Chart {
         /// True if the model has kinks inside the panels (V-cavity masking): convergence is then algebraic, and the
         /// difference of two levels says less.
         kinks: bool,
+        /// Width in `wo . wm` over which the Fresnel factor changes at grazing incidence; infinite if it is smooth there.
+        slope: f64,
+        /// Width of the layer at the horizon in `mu_i`; three alpha for Smith's masking.
+        layer: f64,
     },
     /// The same for two widths, for lobes with other edges than masking has, and where F is not smooth; see [`ellipse`].
     Ellipse(FacetLobe),
@@ -60,10 +64,10 @@ impl Chart {
     /// The half-vector chart that facets need: the simple one where it is enough.
     #[must_use]
     pub fn facets(facets: FacetLobe) -> Chart {
-        let FacetLobe { alpha: [x, y], reach, edge, layer, fold, crease } = facets;
+        let FacetLobe { alpha: [x, y], reach, edge, layer, fold, crease, slope } = facets;
         let smith = (layer - 3.0 * x).abs() <= 0.0;
         if (x - y).abs() <= 0.0 && smith && edge == Edge::Layer && !fold && crease.is_none() {
-            return Chart::HalfVector { alpha: x, reach, kinks: false };
+            return Chart::HalfVector { alpha: x, reach, kinks: false, slope, layer };
         }
         Chart::Ellipse(facets)
     }
@@ -72,8 +76,8 @@ impl Chart {
     #[must_use]
     pub fn creased(self, crease: Option<Crease>) -> Chart {
         match self {
-            Chart::HalfVector { alpha, reach, .. } if crease.is_some() => {
-                Chart::Ellipse(FacetLobe { crease, ..FacetLobe::smith([alpha; 2], reach) })
+            Chart::HalfVector { alpha, reach, slope, layer, .. } if crease.is_some() => {
+                Chart::Ellipse(FacetLobe { crease, slope, layer, ..FacetLobe::smith([alpha; 2], reach) })
             }
             Chart::Ellipse(facets) => {
                 Chart::Ellipse(FacetLobe { crease: crease.or(facets.crease), ..facets })
@@ -85,7 +89,9 @@ impl Chart {
     /// Calls `visit` with batches of nodes at a refinement level (2 is coarse, 16 is full f64 accuracy).
     pub fn visit(&self, view: View, level: f64, visit: &mut dyn FnMut(&Nodes)) {
         match *self {
-            Chart::HalfVector { alpha, reach, .. } => half_vector::visit(view.mu, alpha, reach, level, visit),
+            Chart::HalfVector { alpha, reach, slope, layer, .. } => {
+                half_vector::visit(view.mu, [alpha, slope, layer], reach, level, visit);
+            }
             Chart::Ellipse(facets) => ellipse::visit(view, &facets, level, visit),
             Chart::Lobe { c, exponent } => lobe::visit(view, c, exponent, level, visit),
             Chart::Fibre { across, cone } => fibre::visit(view, across, cone, level, visit),
@@ -103,9 +109,12 @@ impl Chart {
             Chart::Ellipse(facets) => return facets.trust(),
             Chart::HalfVector { kinks: true, .. } | Chart::Broad { kinks: true, .. } => (&[0.2], &[0.2]),
             Chart::HalfVector { reach, .. } if reach.is_finite() => {
-                (&[1.1, 1.1, 4.0, 2.0], &[0.2, 0.2, 0.03, 0.005, 0.002])
+                (&[1.1, 1.1, 4.0, 2.0, 2.0, 1.2], &[0.2, 0.2, 0.03, 0.005, 0.005])
             }
-            Chart::HalfVector { .. } => (&[1.0, 1.0, 6.0, 8.0], &[0.05, 0.05, 0.03, 0.003, 0.001]),
+            Chart::HalfVector { .. } => {
+                // what has not converged by the sixth level has a tail that converges slowly
+                (&[1.0, 1.0, 3.2, 6.0, 3.0, 2.0], &[0.05, 0.05, 0.03, 0.003, 0.003, 0.01])
+            }
             Chart::Lobe { .. } => (&[1.4, 1.4, 3.0, 6.0, 2.5], &[0.2, 0.2, 0.03, 0.02, 0.003]),
             Chart::Fibre { .. } => (&[0.7, 0.7, 0.55], &[0.02]),
             Chart::Broad { .. } => (&[1.5, 1.5, 3.0, 2.5, 0.7, 1.0, 0.6], &[0.03, 0.03, 0.1, 0.1, 0.01]),

@@ -104,6 +104,8 @@ pub struct FacetLobe {
     pub fold: bool,
     /// Where its Fresnel factor is not smooth.
     pub crease: Option<Crease>,
+    /// Width in `wo . wm` over which the Fresnel factor changes at grazing incidence; infinite if it is smooth there.
+    pub slope: f64,
 }
 
 impl FacetLobe {
@@ -111,7 +113,7 @@ impl FacetLobe {
     #[must_use]
     pub fn smith(alpha: [f64; 2], reach: f64) -> FacetLobe {
         let layer = 3.0 * alpha[0].min(alpha[1]);
-        FacetLobe { alpha, reach, edge: Edge::Layer, layer, fold: false, crease: None }
+        FacetLobe { alpha, reach, edge: Edge::Layer, layer, fold: false, crease: None, slope: f64::INFINITY }
     }
 
     /// How far the differences of levels are to be trusted.
@@ -129,8 +131,11 @@ impl FacetLobe {
             Edge::Layer => match (self.reach.is_finite(), self.crease.is_some()) {
                 (true, false) => (&[1.0, 1.0, 5.0, 3.5, 0.75, 0.6], &[0.2, 0.2, 0.2, 0.03, 0.002]),
                 (true, true) => (&[0.3, 0.3, 0.5, 0.5, 0.4, 0.3], &[0.2, 0.2, 0.1, 0.1, 0.005]),
-                (false, false) => (&[0.6, 0.6, 0.45, 0.4, 0.35], &[0.03, 0.03, 0.01, 0.005, 0.002]),
-                (false, true) => (&[0.3, 0.3, 0.3, 0.3, 0.3, 0.2], &[0.1, 0.1, 0.03, 0.01]),
+                (false, false) => (
+                    &[0.6, 0.6, 0.45, 0.35, 0.3, 0.3, 0.3, 0.3, 0.19],
+                    &[0.03, 0.03, 0.01, 0.005, 0.02, 0.05],
+                ),
+                (false, true) => (&[0.3], &[0.1, 0.1, 0.05, 0.05, 0.05, 0.05, 0.1]),
             },
         };
         Trust { gain, memory }
@@ -274,9 +279,9 @@ impl Ellipse {
             cuts.extend(crease.roots(along, row.r, nodes.mu_o).map(|y| (y, blur)));
         }
         let peak_end = row.quarter.min(end);
-        // mu_i + mu_o vanishes at a negative angle whose tangent is -mu_o / along
-        let near_normal =
-            if lobe.edge == Edge::Graze && along > 0.0 { nodes.mu_o / along } else { f64::INFINITY };
+        // mu_i + mu_o vanishes at a negative angle whose tangent is -mu_o / along; and wo . wm = mu_o + along t
+        let graze = if lobe.edge == Edge::Graze { 0.0 } else { lobe.slope };
+        let near_normal = if along > 0.0 { (nodes.mu_o + graze) / along } else { f64::INFINITY };
         let peak_scale = 0.5 * width.min(near_normal).max(1e-9);
         nodes.panel = panel;
         crease::pieces(peak_end, peak_scale, &cuts, self.level, crease::peak_order(), &mut |rule| {

@@ -13,8 +13,9 @@
 //!
 //! Panels, each graded by [`Graded`]:
 //! * azimuth: (0, pi/2) and (pi/2, pi), graded towards pi/2 on the scale `mu / s`, where R changes;
-//! * below `t_max / 2`: graded towards t = 0 on the scale `alpha` of the peak of D and its tail;
-//! * above it: graded towards the horizon on the scale `min(mu, 3 alpha) / (2 R)`, where Smith masking changes.
+//! * below `t_max / 2`: graded towards t = 0 on the scale `alpha` of the peak of D and its tail, and in front on that of a Fresnel
+//!   factor that changes over a width in v: there `v = mu + s t`;
+//! * above it: graded towards the horizon on the scale `min(mu, layer) / (2 R)`, where masking changes (Smith's within 3 alpha).
 //!
 //! Measured on GGX (scale and bias, 600 points with mu and alpha down to 1e-4): the largest error falls by a factor of
 //! about ten for each unit of the level, down to 4e-14, at about 9 `level`^2 evaluations (25 `level`^2 when both mu and
@@ -102,8 +103,14 @@ thread_local! {
 
 /// Calls `visit` with batches of nodes that cover the hemisphere for one view cosine.
 ///
-/// `reach`: D vanishes beyond `tan(t) = reach * alpha` (6.5 for Beckmann, infinite for GGX); no node is spent there.
-pub fn visit(mu_o: f64, alpha: f64, reach: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
+/// `slope`: the width in v over which F changes at grazing incidence. `layer`: that in `mu_i` over which masking changes. `reach`: D vanishes beyond `tan(t) = reach * alpha` (6.5 for Beckmann, infinite for GGX); no node is spent there.
+pub fn visit(
+    mu_o: f64,
+    [alpha, slope, layer]: [f64; 3],
+    reach: f64,
+    level: f64,
+    visit: &mut dyn FnMut(&Nodes),
+) {
     let alpha = alpha.clamp(ALPHA_RANGE[0], ALPHA_RANGE[1]);
     let end = half_tangent(reach * alpha);
     // the arrays are kept from call to call: clearing them would cost as much as a coarse level
@@ -121,8 +128,9 @@ pub fn visit(mu_o: f64, alpha: f64, reach: f64, level: f64, visit: &mut dyn FnMu
         azimuth.set(azimuth_scale, order, level);
         // Gradings are shared by the rows of a side; the row at phi = 0 (or pi/2) is the most demanding one.
         let hardest = Row::relative(if front { 1.0 } else { 0.0 }, s, mu.max(1e-12));
-        peak.set(0.5 * alpha / hardest.quarter.min(end), PEAK, level);
-        let scale = (mu.min(3.0 * alpha) / (2.0 * hardest.r)).clamp(1e-9 * alpha.min(1.0), 1.0);
+        let rise = if front { (mu + slope) / s.max(1e-9) } else { f64::INFINITY };
+        peak.set(0.5 * alpha.min(rise) / hardest.quarter.min(end), PEAK, level);
+        let scale = (mu.min(layer.max(ALPHA_RANGE[0])) / (2.0 * hardest.r)).clamp(1e-9 * alpha.min(1.0), 1.0);
         horizon.set(0.5 * scale / hardest.quarter, HORIZON, level);
         near.panel = if front { 0 } else { 2 };
         far.panel = near.panel + 1;

@@ -77,7 +77,7 @@ impl Facets for Grooves {
     fn chart(&self) -> Option<Chart> {
         let alpha = blinn_phong::equivalent_alpha(self.n);
         let reach = if self.n > 100.0 { 9.0 } else { f64::INFINITY };
-        Some(Chart::HalfVector { alpha, reach, kinks: true })
+        Some(Chart::HalfVector { alpha, reach, kinks: true, slope: f64::INFINITY, layer: 3.0 * alpha })
     }
 
     /// Where `cos^n` has fallen below rounding: `n/2 ln(1 + tan²)` is that many.

@@ -85,7 +85,13 @@ impl Brdf for CookTorrance {
     }
 
     fn chart(&self) -> Option<Chart> {
-        Some(Chart::HalfVector { alpha: self.alpha, reach: 6.5, kinks: true })
+        Some(Chart::HalfVector {
+            alpha: self.alpha,
+            reach: 6.5,
+            kinks: true,
+            slope: f64::INFINITY,
+            layer: 3.0 * self.alpha,
+        })
     }
 
     /// Four times that of the modern form.

@@ -71,6 +71,12 @@ impl Facets for Coat {
     }
 
     fn chart(&self) -> Option<Chart> {
-        Some(Chart::HalfVector { alpha: self.alpha, reach: f64::INFINITY, kinks: false })
+        Some(Chart::HalfVector {
+            alpha: self.alpha,
+            reach: f64::INFINITY,
+            kinks: false,
+            slope: f64::INFINITY,
+            layer: 3.0 * self.alpha,
+        })
     }
 }

@@ -6,7 +6,7 @@
 use super::grooves::Grooves;
 use super::microfacet::Fresnel;
 use super::{Brdf, Functional, Sample};
-use crate::integrate::{Chart, Estimate};
+use crate::integrate::{BATCH, Chart, Estimate, Nodes};
 use crate::math::frame::{self, HalfVector};
 use glam::{DVec2, DVec3};
 use std::fmt::Debug;
@@ -75,6 +75,21 @@ impl<L: Facets> Brdf for HalfVectorLobe<L> {
 
     fn chart(&self) -> Option<Chart> {
         self.facets.chart()
+    }
+
+    /// By the half vectors of the nodes: that of two directions has the rounding of both, which is a part of the width of a narrow
+    /// lobe.
+    fn eval_nodes(&self, nodes: &Nodes, out: &mut [f64; BATCH]) {
+        let wo = nodes.wo_above();
+        for (i, o) in out[..nodes.len].iter_mut().enumerate() {
+            let (wi, cos_d) = (nodes.wi(i), nodes.cos_d[i]);
+            *o = if !self.flat && frame::both_above(wo, wi) && cos_d > 0.0 {
+                let h = HalfVector { wh: nodes.wh(i), cos_d, length_squared: 4.0 * cos_d * cos_d };
+                self.fresnel.at(cos_d) * self.facets.d(h.wh) * self.facets.visibility(wo, wi, &h)
+            } else {
+                0.0
+            };
+        }
     }
 
     fn reduced(&self, mu_o: f64, functionals: &[Functional], tolerance: f64) -> Option<Estimate> {

@@ -101,7 +101,13 @@ impl Brdf for SchlickMasked {
     }
 
     fn chart(&self) -> Option<Chart> {
-        Some(Chart::HalfVector { alpha: self.alpha, reach: f64::INFINITY, kinks: false })
+        Some(Chart::HalfVector {
+            alpha: self.alpha,
+            reach: f64::INFINITY,
+            kinks: false,
+            slope: f64::INFINITY,
+            layer: self.k,
+        })
     }
 
     /// A plain loop: D = a^2 / (pi (a^2 cos^2 + sin^2)^2), V = 1 / (4 (mu (1 - k) + k)(...)).

@@ -11,7 +11,7 @@ use super::microfacet::{Distribution, Fresnel, Masking};
 use super::{Brdf, Btdf, Param, ParamError, Params, Sample};
 use crate::integrate::facet::{self, Facet};
 use crate::integrate::stop::{Level, Trust, climb_sure};
-use crate::integrate::{Chart, Estimate, FacetLobe};
+use crate::integrate::{BATCH, Chart, Estimate, Nodes};
 use crate::math::frame;
 use crate::terms::fresnel;
 use crate::terms::refraction::{self, Across};
@@ -29,7 +29,10 @@ pub(super) const ACROSS: Param = Param::choice(
 const LEVELS: [f64; 9] = [2.0, 3.0, 4.5, 6.5, 9.0, 12.0, 16.0, 21.0, 27.0];
 
 /// Trust in it.
-const TRUST: Trust = Trust { gain: &[2.0], memory: &[0.2] };
+const TRUST: Trust = Trust { gain: &[1.0], memory: &[0.3] };
+
+/// Widths below which the coarsest levels see nothing of a peak at grazing views, and those views.
+const NARROW: [f64; 2] = [1e-4, 0.01];
 
 /// A rough dielectric interface.
 #[derive(Debug)]
@@ -189,8 +192,12 @@ impl<D: Distribution> Brdf for Glass<D> {
 
     /// From the denser side total reflection is a crease.
     fn chart(&self) -> Option<Chart> {
-        let crease = Fresnel::Dielectric { eta: self.eta }.crease();
-        Some(Chart::facets(FacetLobe { crease, ..self.distribution.facets() }))
+        Some(Chart::facets(Fresnel::Dielectric { eta: self.eta }.marks(self.distribution.facets())))
+    }
+
+    fn eval_nodes(&self, nodes: &Nodes, out: &mut [f64; BATCH]) {
+        self.distribution.dv_nodes(nodes, self.masking(), out);
+        Fresnel::Dielectric { eta: self.eta }.scale_nodes(nodes, out);
     }
 
     fn turns(&self) -> bool {
@@ -239,9 +246,10 @@ impl<D: Distribution> Btdf for Glass<D> {
                 fresnel::dielectric_transmittance(mu_o, self.eta).unpolarised(),
             ));
         }
-        self.distribution.alpha()?;
-        let first =
-            usize::from(tolerance < 1e-3) + usize::from(tolerance < 1e-6) + usize::from(tolerance < 1e-9);
+        let alpha = self.distribution.alpha()?;
+        let hidden = alpha < NARROW[0] && mu_o < NARROW[1];
+        let finer = [hidden, tolerance < 1e-3, tolerance < 1e-6, tolerance < 1e-9];
+        let first = finer.into_iter().filter(|f| *f).count();
         Some(climb_sure(TRUST, first..LEVELS.len(), 1, tolerance, |j, level| {
             self.transmitted_albedo(mu_o, LEVELS[j], level);
         }))

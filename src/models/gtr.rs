@@ -108,6 +108,19 @@ impl Gtr {
         gtr::d(self.alpha, self.gamma, DVec3::new(1.0, 0.0, f64::MIN_POSITIVE))
     }
 
+    /// Width of the peak, and how many widths it reaches.
+    ///
+    /// `D(theta) / D(0) = (1 + q sin^2)^(-gamma)`, `q = (1 - alpha^2) / alpha^2`: a high power falls on a finer scale than alpha, and to
+    /// nothing within a few.
+    fn peak(&self) -> (f64, f64) {
+        let a2 = self.alpha * self.alpha;
+        let narrow = (1.0 - a2).max(0.0);
+        let alpha = self.alpha / (1.0 + (self.gamma - 2.0).max(0.0) * narrow).sqrt();
+        let sin2 = a2 * libm::expm1(END / self.gamma) / narrow;
+        let reach = if sin2 < 1.0 { (sin2 / (1.0 - sin2)).sqrt() / alpha } else { f64::INFINITY };
+        (alpha, if reach < LONG { reach } else { f64::INFINITY })
+    }
+
     /// `mu Lambda` of a direction.
     fn masked(&self, w: DVec3) -> f64 {
         self.mu_lambda(w.z, crate::math::frame::sin2_theta(w))
@@ -126,6 +139,12 @@ fn hidden(mu: f64, sin: f64, cos: f64) -> f64 {
         sin - mu * cos * libm::atan2(sin, mu * cos)
     }
 }
+
+/// `-ln` of the part of its peak below which D is left out of integrals.
+const END: f64 = 44.0;
+
+/// Widths from which on a tail is a long one.
+const LONG: f64 = 30.0;
 
 /// Error of an albedo by the rounding of the masking integral, over `1 / alpha`: measured by the drift of the white albedo at grazing
 /// views, which does not depend on a small alpha, from alpha 8e-4 to 8e-6.
@@ -153,7 +172,8 @@ impl Facets for Gtr {
     }
 
     fn chart(&self) -> Option<Chart> {
-        Some(Chart::HalfVector { alpha: self.alpha, reach: f64::INFINITY, kinks: false })
+        let (alpha, reach) = self.peak();
+        Some(Chart::HalfVector { alpha, reach, kinks: false, slope: f64::INFINITY, layer: 3.0 * alpha })
     }
 }
 

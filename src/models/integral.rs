@@ -72,7 +72,7 @@ impl Batch {
 ///
 /// A number is a view cosine in the plane of the tangent. A sum of lobes is integrated lobe by lobe, each to its share of the
 /// tolerance; a mirror is its value; then a reduction if the model has one for these functionals, its chart, or adaptive subdivision.
-/// What the model itself was integrated from ([`Brdf::own_error`]) is in the estimate.
+/// What the model itself was integrated from ([`Brdf::own_error`]) and what rounds in it ([`Brdf::rounding`]) are in the estimate.
 #[must_use]
 pub fn integrate(
     model: &dyn Brdf,
@@ -127,7 +127,9 @@ fn by_nodes(model: &dyn Brdf, view: View, functionals: &[Functional], tolerance:
         Some(chart) => ladder::integrate(&chart, view, channels, tolerance, &mut add),
         None => adaptive::integrate(view, channels, tolerance, &mut add),
     };
-    let own = model.own_error(view.mu);
-    estimate.error[..channels].iter_mut().for_each(|e| *e += own);
+    let (own, rounding) = (model.own_error(view.mu), model.rounding(view));
+    for (e, v) in estimate.error[..channels].iter_mut().zip(&estimate.value) {
+        *e += own + rounding * v.abs();
+    }
     estimate
 }

@@ -194,6 +194,11 @@ pub trait Brdf: Debug + Send + Sync {
     fn own_error(&self, _mu_o: f64) -> f64 {
         0.0
     }
+
+    /// What an albedo at a view may be off by, relative to itself, because values hold powers that magnify rounding.
+    fn rounding(&self, _view: View) -> f64 {
+        0.0
+    }
 }
 
 /// The transmitted part of a model: `wi` on the other side of the surface than `wo`, both away from it.

@@ -65,6 +65,12 @@ fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     })))
 }
 
+/// Elevations of the view below which nothing is seen of its layer.
+const LEAST: f64 = 1e-18;
+
+/// Ratio of the ends of panels: a panel keeps as far from the pole as the half of its length.
+const STEP: f64 = 16.0;
+
 /// The coefficients without their angles; `twice` is the interreflection over rho.
 #[derive(Debug)]
 struct OrenNayarFull {
@@ -75,6 +81,56 @@ struct OrenNayarFull {
     twice: f64,
 }
 
+/// A polar angle by its complement, sine and cosine, each to its own digits: the angle itself has none left of a grazing cosine.
+#[derive(Debug, Clone, Copy)]
+struct Height {
+    elevation: f64,
+    sin: f64,
+    cos: f64,
+}
+
+impl Height {
+    fn of(w: DVec3) -> Height {
+        let sin = frame::sin_theta(w);
+        Height { elevation: libm::atan2(w.z, sin), sin, cos: w.z }
+    }
+
+    fn above(elevation: f64) -> Height {
+        let (cos, sin) = libm::sincos(elevation);
+        Height { elevation, sin, cos }
+    }
+}
+
+/// What the formula asks of two polar angles, a the larger one.
+struct Pair {
+    sin_a: f64,
+    tan_b: f64,
+    /// `tan((a + b) / 2)`.
+    tan_mean: f64,
+    /// `2 b / pi`.
+    turn: f64,
+    /// `sin a - (2 b / pi)^3`, without cancellation where both graze.
+    far: f64,
+    /// `4 a b / pi^2`.
+    area: f64,
+}
+
+impl Pair {
+    fn new(o: Height, i: Height) -> Pair {
+        let (a, b) = if o.cos < i.cos { (o, i) } else { (i, o) };
+        let rest = |h: Height| 2.0 * FRAC_1_PI * h.elevation;
+        let (q, turn) = (rest(b), 1.0 - rest(b));
+        Pair {
+            sin_a: a.sin,
+            tan_b: b.sin / b.cos,
+            tan_mean: (a.sin + b.sin) / (a.cos + b.cos),
+            turn,
+            far: q * (3.0 - 3.0 * q + q * q) - a.cos * a.cos / (1.0 + a.sin),
+            area: (1.0 - rest(a)) * turn,
+        }
+    }
+}
+
 impl OrenNayarFull {
     /// The smallest value over rho / pi: both directions grazing from opposite sides, where `sin a - (2b/pi)^3` over
     /// the height is 6/pi.
@@ -83,20 +139,18 @@ impl OrenNayarFull {
     }
 
     /// What the formula is over rho / pi as a function of c alone, `k0 + k1 c`, for c >= 0 and for c < 0.
-    fn row(&self, theta_o: f64, theta_i: f64) -> (f64, [f64; 2]) {
-        let (a, b) = (theta_o.max(theta_i), theta_o.min(theta_i));
-        let turn = 2.0 * FRAC_1_PI * b;
-        let area = 2.0 * FRAC_1_PI * a * turn;
-        let (tan, between) = (self.c2 * libm::tan(b), self.c3 * area * area * libm::tan(0.5 * (a + b)));
+    fn row(&self, o: Height, i: Height) -> (f64, [f64; 2]) {
+        let Pair { sin_a, tan_b, tan_mean, turn, far, area } = Pair::new(o, i);
+        let (tan, between) = (self.c2 * tan_b, self.c3 * area * area * tan_mean);
         let twice = self.twice * turn * turn;
-        let near = tan * libm::sin(a) - between - twice;
-        let far = tan * (libm::sin(a) - turn * turn * turn) + between - twice;
+        let near = tan * sin_a - between - twice;
+        let far = tan * far + between - twice;
         (self.c1 + between + self.twice, [near, far])
     }
 
     /// `2 int_0^pi max(0, k0 + k1 c) dphi`, between the azimuths at which either half changes its sign.
-    fn circle(&self, theta_o: f64, theta_i: f64) -> f64 {
-        let (k0, slopes) = self.row(theta_o, theta_i);
+    fn circle(&self, o: Height, i: Height) -> f64 {
+        let (k0, slopes) = self.row(o, i);
         let mut sum = 0.0;
         for (k1, [from, to]) in slopes.into_iter().zip([[0.0, FRAC_PI_2], [FRAC_PI_2, PI]]) {
             let root = -k0 / k1;
@@ -111,17 +165,14 @@ impl OrenNayarFull {
 
     /// The formula before the clamp.
     fn unclamped(&self, wo: DVec3, wi: DVec3) -> f64 {
-        let (theta_o, theta_i) = (frame::theta(wo), frame::theta(wi));
-        let (a, b) = (theta_o.max(theta_i), theta_o.min(theta_i));
-        let sines = frame::sin_theta(wo) * frame::sin_theta(wi);
+        let (o, i) = (Height::of(wo), Height::of(wi));
+        let Pair { sin_a, tan_b, tan_mean, turn, far, area } = Pair::new(o, i);
+        let sines = o.sin * i.sin;
         // at the normal the azimuth is undefined, and every term that has it is 0
         let c = if sines > 0.0 { ((wo.x * wi.x + wo.y * wi.y) / sines).clamp(-1.0, 1.0) } else { 0.0 };
-        let turn = 2.0 * FRAC_1_PI * b;
-        let far = if c < 0.0 { turn * turn * turn } else { 0.0 };
-        let area = 2.0 * FRAC_1_PI * a * turn;
         let single = self.c1
-            + c * self.c2 * (libm::sin(a) - far) * libm::tan(b)
-            + (1.0 - c.abs()) * self.c3 * area * area * libm::tan(0.5 * (a + b));
+            + c * self.c2 * (if c < 0.0 { far } else { sin_a }) * tan_b
+            + (1.0 - c.abs()) * self.c3 * area * area * tan_mean;
         self.rho * FRAC_1_PI * (single + self.twice * (1.0 - c * turn * turn))
     }
 }
@@ -133,11 +184,19 @@ impl Reflector for OrenNayarFull {
 
     /// The azimuth is closed, also where the clamp acts; the height of wi is left.
     fn reduced(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
-        let theta_o = libm::acos(mu_o.clamp(0.0, 1.0));
+        let o = Height::of(frame::from_mu(mu_o));
         let scale = self.rho * FRAC_1_PI;
-        let e = line::integrate(&[0.0, theta_o, FRAC_PI_2], 1, tolerance, &mut |theta, out| {
-            let (sin, cos) = libm::sincos(theta);
-            out[0] = scale * sin * cos * self.circle(theta_o, theta);
+        // by the elevation, whose small values keep their digits; the mean tangent has its pole at minus that of the view
+        let mut breaks = vec![0.0];
+        let mut end = o.elevation;
+        while end > LEAST && end < FRAC_PI_2 {
+            breaks.push(end);
+            end *= STEP;
+        }
+        breaks.push(FRAC_PI_2);
+        let e = line::integrate(&breaks, 1, tolerance, &mut |elevation, out| {
+            let i = Height::above(elevation);
+            out[0] = scale * i.sin * i.cos * self.circle(o, i);
         });
         Some(e)
     }

@@ -76,7 +76,13 @@ impl Facets for Grooves {
     }
 
     fn chart(&self) -> Option<Chart> {
-        Some(Chart::HalfVector { alpha: self.distribution.alpha_x(), reach: 6.5, kinks: true })
+        Some(Chart::HalfVector {
+            alpha: self.distribution.alpha_x(),
+            reach: 6.5,
+            kinks: true,
+            slope: f64::INFINITY,
+            layer: 3.0 * self.distribution.alpha_x(),
+        })
     }
 
     fn groove_reach(&self) -> Option<f64> {

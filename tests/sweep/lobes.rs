@@ -21,20 +21,36 @@ pub(crate) enum Over {
     Cosine,
 }
 
+/// `ln |C wo|` by the deviation of C from a reflection, and what its rounding comes to.
+pub(crate) fn log_length(c: [f64; 3], wo: [f64; 3]) -> (f64, f64) {
+    let excess = |k: usize| (c[k].abs() - 1.0) * (c[k].abs() + 1.0) * wo[k] * wo[k];
+    let parts = [excess(0), excess(1), excess(2)];
+    let sum: f64 = parts.iter().sum();
+    let moved = parts.iter().map(|e| e.abs()).sum::<f64>() / (1.0 + sum);
+    let log = 0.5 * sum.ln_1p();
+    (log, 4e-16 * (moved + log.abs()))
+}
+
 /// `factor int max(0, v . wi)^n (mu_i or 1) dwi` over the upper hemisphere, v = C wo.
 ///
 /// Round v, with a the angle to it and psi the azimuth from the meridian: `mu_i = cos a z + sin a s cos psi`. The horizon is at
 /// `cos psi = -cot a z / s`, and the integral over psi is closed.
-pub(crate) fn cosine(setting: &Setting, tolerance: f64, factor: f64, v: [f64; 3], n: f64, over: Over) -> Sum {
+pub(crate) fn cosine(
+    setting: &Setting,
+    tolerance: f64,
+    factor: f64,
+    [c, wo]: [[f64; 3]; 2],
+    n: f64,
+    over: Over,
+) -> Sum {
+    let v: [f64; 3] = std::array::from_fn(|k| c[k] * wo[k]);
     let flat = v[0].hypot(v[1]);
     let length = flat.hypot(v[2]);
     if length <= 0.0 {
         return Sum::default();
     }
     let (z, s) = (v[2] / length, flat / length);
-    let excess: f64 = v.iter().map(|x| x * x).sum::<f64>() - 1.0;
-    let log_length = if excess.abs() < 0.1 { 0.5 * excess.ln_1p() } else { length.ln() };
-    let scale = factor * (n * log_length).exp();
+    let scale = factor * (n * log_length(c, wo).0).exp();
     // where the horizon begins, and the width of the lobe
     let meets = z.abs().atan2(s);
     let width = (2.0 / (n + 2.0)).sqrt();

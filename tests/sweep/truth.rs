@@ -82,16 +82,14 @@ pub(crate) fn albedo(draw: &Draw) -> Truth {
         "lafortune" => {
             let mut total = (number("rho_d"), 0.0);
             for row in p.rows("lobes").unwrap() {
-                let v = [row[0] * wo[0], row[1] * wo[1], row[2] * wo[2]];
-                let (e, error) = two_settings(|s, t| lobes::cosine(s, t, row[4], v, row[3], Over::Nothing));
+                let (e, error) = power(wo, [row[0], row[1], row[2]], row[3], row[4], Over::Nothing);
                 total = (total.0 + e, total.1 + error);
             }
             Ok(total)
         }
         "lafortune-lobe" => {
-            let v = [number("cx") * wo[0], number("cy") * wo[1], number("cz") * wo[2]];
-            let e = two_settings(|s, t| lobes::cosine(s, t, number("rho_s"), v, number("n"), Over::Nothing));
-            plus(number("rho_d"), 1.0, Ok(e))
+            let c = [number("cx"), number("cy"), number("cz")];
+            plus(number("rho_d"), 1.0, Ok(power(wo, c, number("n"), number("rho_s"), Over::Nothing)))
         }
         "ashikhmin-shirley" => {
             let gloss = lobe(lobe::ashikhmin_shirley(number("rs"), number("nu"), number("nv"), mu));
@@ -209,8 +207,13 @@ fn plus(constant: f64, scale: f64, lobe: Truth) -> Truth {
 }
 
 fn phong(wo: [f64; 3], n: f64, constant: f64, scale: f64, over: Over) -> Truth {
-    let v = [-wo[0], -wo[1], wo[2]];
-    plus(constant, 1.0, Ok(two_settings(|s, t| lobes::cosine(s, t, scale, v, n, over))))
+    plus(constant, 1.0, Ok(power(wo, [-1.0, -1.0, 1.0], n, scale, over)))
+}
+
+/// A power of a cosine, with the error that rounding of the base has in it.
+fn power(wo: [f64; 3], c: [f64; 3], n: f64, scale: f64, over: Over) -> (f64, f64) {
+    let (e, error) = two_settings(|s, t| lobes::cosine(s, t, scale, [c, wo], n, over));
+    (e, error + n * lobes::log_length(c, wo).1 * e)
 }
 
 pub(crate) fn schlick_of(p: &Params) -> Fresnel {

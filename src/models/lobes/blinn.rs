@@ -48,7 +48,13 @@ impl Brdf for Blinn {
     fn chart(&self) -> Option<Chart> {
         let alpha = blinn_phong::equivalent_alpha(self.n);
         let end = if self.n > 1.0 { libm::expm1(2.0 * END / self.n).sqrt() } else { f64::INFINITY };
-        Some(Chart::HalfVector { alpha, reach: end / alpha, kinks: false })
+        Some(Chart::HalfVector {
+            alpha,
+            reach: end / alpha,
+            kinks: false,
+            slope: f64::INFINITY,
+            layer: 3.0 * alpha,
+        })
     }
 
     fn eval_nodes(&self, nodes: &Nodes, out: &mut [f64; BATCH]) {

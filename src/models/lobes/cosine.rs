@@ -1,7 +1,7 @@
 //! The cosine lobe round a direction that is linear in wo: Phong's, and Lafortune's generalisation.
 
 use super::{Over, cosine_pdf, cosine_sample};
-use crate::integrate::Chart;
+use crate::integrate::{Chart, View};
 use crate::math::{frame, special};
 use crate::models::{Brdf, Sample};
 use glam::{DVec2, DVec3};
@@ -41,6 +41,16 @@ impl Cosine {
         let e = [excess(self.c[0].abs(), wo.x), excess(self.c[1].abs(), wo.y), excess(self.c[2].abs(), wo.z)];
         let sum = e[0] + e[1] + e[2];
         if sum.abs() < 0.5 { 0.5 * libm::log1p(sum) } else { libm::log(v.length()) }
+    }
+
+    /// What rounding of `ln |v|` comes to, by the terms that it is made of.
+    fn rounding_of_length(&self, wo: DVec3) -> f64 {
+        let terms = (self.c.map(f64::abs), wo.to_array());
+        let square = |c: f64, w: f64| c * c * w * w;
+        let moved = |c: f64, w: f64| ((c - 1.0) * (c + 1.0) * w * w).abs();
+        let sum = |f: &dyn Fn(f64, f64) -> f64| (0..3).map(|k| f(terms.0[k], terms.1[k])).sum::<f64>();
+        let v2 = sum(&square);
+        if v2 > 0.0 { f64::EPSILON * (2.0 * sum(&moved) / v2 + libm::log(v2).abs()) } else { 0.0 }
     }
 
     /// `ln cos a`, or none where the lobe is 0.
@@ -99,6 +109,11 @@ impl Brdf for Cosine {
 
     fn chart(&self) -> Option<Chart> {
         Some(Chart::Lobe { c: self.c, exponent: self.n })
+    }
+
+    /// The power magnifies the rounding of its base, and an angle of the width of the lobe is known to that of a unit vector.
+    fn rounding(&self, view: View) -> f64 {
+        self.n * self.rounding_of_length(view.direction()) + 2.0 * f64::EPSILON * self.n.sqrt()
     }
 
     fn turns(&self) -> bool {

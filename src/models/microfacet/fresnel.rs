@@ -1,6 +1,6 @@
 //! The Fresnel factor of a microfacet model.
 
-use crate::integrate::{BATCH, Crease, Nodes};
+use crate::integrate::{BATCH, Crease, FacetLobe, Nodes};
 use crate::terms::{fresnel, schlick};
 
 /// Which Fresnel factor.
@@ -56,17 +56,40 @@ impl Fresnel {
     /// critical angle, for a conductor with n < 1 and a small k at a complex v near it.
     #[must_use]
     pub fn crease(&self) -> Option<Crease> {
-        let (n, k) = match *self {
-            Fresnel::Schlick { .. } => return None,
-            Fresnel::Dielectric { eta } => (eta, 0.0),
-            Fresnel::Conductor { eta, k } => (eta, k),
-        };
+        let (n, k) = self.index()?;
         // v^2 = x - i y, v = p - i q
         let (x, y) = ((1.0 - n) * (1.0 + n) + k * k, 2.0 * n * k);
         let length = libm::hypot(x, y);
         let at = (0.5 * (length + x)).max(0.0).sqrt();
         let width = if at > 0.0 { 0.5 * y / at } else { f64::INFINITY };
         (at > 0.0 && at < 1.0 + FELT && width < FELT).then_some(Crease { at: at.min(1.0), width })
+    }
+
+    /// Width in v over which F changes at grazing incidence: the distance of its nearest singularity.
+    ///
+    /// The parallel part has its pole at `v = -1 / sqrt(N^2 + 1)`; the branch point is a matter of [`Fresnel::crease`] where it is near
+    /// the real cosines, else at the distance `|sqrt(N^2 - 1)|`.
+    #[must_use]
+    pub fn slope(&self) -> f64 {
+        let Some((n, k)) = self.index() else { return f64::INFINITY };
+        let from = |one: f64| libm::hypot((n - k) * (n + k) + one, 2.0 * n * k).sqrt();
+        let branch = if self.crease().is_some() { f64::INFINITY } else { from(-1.0) };
+        (1.0 / from(1.0)).min(branch)
+    }
+
+    /// What the chart of facets must know of F.
+    #[must_use]
+    pub fn marks(&self, facets: FacetLobe) -> FacetLobe {
+        FacetLobe { crease: self.crease(), slope: self.slope(), ..facets }
+    }
+
+    /// Real and imaginary part of the relative index.
+    fn index(&self) -> Option<(f64, f64)> {
+        match *self {
+            Fresnel::Schlick { .. } => None,
+            Fresnel::Dielectric { eta } => Some((eta, 0.0)),
+            Fresnel::Conductor { eta, k } => Some((eta, k)),
+        }
     }
 
     /// Multiplies a batch by F.

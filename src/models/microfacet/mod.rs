@@ -124,7 +124,7 @@ impl<D: Distribution> Brdf for Microfacet<D> {
     }
 
     fn chart(&self) -> Option<Chart> {
-        Some(Chart::facets(FacetLobe { crease: self.fresnel.crease(), ..self.distribution.facets() }))
+        Some(Chart::facets(self.fresnel.marks(self.distribution.facets())))
     }
 
     fn turns(&self) -> bool {
