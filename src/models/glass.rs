@@ -26,7 +26,7 @@ pub(super) const ACROSS: Param = Param::choice(
 );
 
 /// Levels of the rule: 4 nodes each in both coordinates of each panel.
-const LEVELS: [f64; 9] = [2.0, 3.0, 4.5, 6.5, 9.0, 12.0, 16.0, 21.0, 27.0];
+const LEVELS: [f64; 11] = [2.0, 3.0, 4.5, 6.5, 9.0, 12.0, 16.0, 21.0, 27.0, 34.0, 43.0];
 
 /// Trust in it.
 const TRUST: Trust = Trust { gain: &[1.0], memory: &[0.3] };

@@ -115,7 +115,7 @@ pub static INFO: TableInfo = TableInfo {
     laws: &["range", "energy", "lobe", "cross-check", "reciprocity", "honest"],
     axes: default_axes,
     // two numbers fit a lobe that is half below the horizon less surely than four
-    least_tolerance: |s| if s.holds("ltc.a") || s.holds("ltc.b") { 2e-3 } else { 1e-3 },
+    least_tolerance: |s| if s.holds("ltc.a") || s.holds("ltc.b") { 2.5e-3 } else { 1e-3 },
     blended: true,
     notes: "The error of a matrix entry is that of the residual of its lobe (ltc.l3), which is what a fit promises: broad lobes and grazing views \
         leave the matrix loose, and other matrices fit as well. Levels are raised until the entries agree too, or end. How well the lobe fits is \

@@ -21,6 +21,7 @@ const PRINTING: &[&[&str]] = &[
     &["plan", "tests/scenes/four_materials.glb", "--json"],
     &["check", "tests/scenes/four_materials.glb"],
     &["check", "tests/scenes/four_materials.glb", "--json"],
+    &["convert", "tests/scenes/spec_gloss/eight.gltf", "--mode", "exact", "--json"],
     &["inspect", "DIR/out/small.exr"],
     &["inspect", "DIR/out/small.exr", "--json"],
     &["diff", "DIR/out/small.exr", "DIR/out/small.exr"],
