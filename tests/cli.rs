@@ -379,6 +379,9 @@ fn folders_and_patterns_name_scenes() {
     }
     let o = brdfbake(&["plan", text(&dir.path().join("*.glb"))]);
     assert_eq!(code(&o), 3, "{}", err(&o));
+    // what says how scenes are read wants one
+    let o = brdfbake(&["bake", "ggx", "--margin", "0.1", "--dry-run"]);
+    assert!(code(&o) == 2 && err(&o).contains("--margin") && err(&o).contains("--scene"), "{}", err(&o));
 }
 
 #[test]

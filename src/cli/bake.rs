@@ -26,7 +26,7 @@ pub struct Args {
     engine: Option<String>,
     /// Bake nothing: print the smallest table that the engine's shader could read to within this error, its recipe, and
     /// the lines that read it. 1e-3 if no error is given.
-    #[arg(long, value_name = "ERROR", requires = "engine", num_args = 0..=1, default_missing_value = "1e-3")]
+    #[arg(long, value_name = "ERROR", requires = "engine", conflicts_with = "scene", num_args = 0..=1, default_missing_value = "1e-3")]
     suggest: Option<f64>,
     /// Where the suggestion must hold: everywhere, or where mu >= 0.05 and roughness >= 0.09.
     #[arg(long, value_enum, default_value = "whole", requires = "suggest")]
@@ -72,6 +72,11 @@ impl Args {
 /// # Errors
 /// [`Failure`] with the exit code of the cause; the output folder is then as it was.
 pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
+    if let Some(option) = args.look.given().filter(|_| args.scene.is_empty()) {
+        return Err(Failure::usage(format!(
+            "{option} says how scenes are read, and there is none; name one with --scene"
+        )));
+    }
     let mut written = scene_write::check(&args.write, &args.look, &args.scene)?;
     let engine = args.engine.as_deref().map(engine::plan).transpose()?;
     if let (Some((engine, plan)), Some(error)) = (&engine, args.suggest) {

@@ -17,7 +17,7 @@ pub struct Args {
     #[arg(required = true)]
     scenes: Vec<PathBuf>,
     #[command(flatten)]
-    look: scene::Look,
+    pictures: scene::Pictures,
     /// Another bound for a rule (`list checks`); `off` leaves it out.
     #[arg(long, value_name = "RULE=BOUND")]
     rule: Vec<String>,
@@ -38,7 +38,7 @@ pub struct Args {
 /// [`Failure`] for a scene that is refused, or a rule that is not known.
 pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
     let files = scene::files(&args.scenes)?;
-    let judging = Judging { rules: rules(&args.rule)?, look: args.look.options(Reader::default()) };
+    let judging = Judging { rules: rules(&args.rule)?, look: args.pictures.options(Reader::default()) };
     let pool = pool(None)?;
     let parts = pool.install(|| Parts::bake(cancel, &args.masking)).map_err(|e| match e {
         InMemoryError::Bake(e) => Failure::from(e),

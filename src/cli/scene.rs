@@ -9,27 +9,49 @@ use crate::recipe::Engine;
 use crate::scene::{Fault, LeftOut, LeftOutKind, Need, Reader, SceneError};
 use std::path::{Path, PathBuf};
 
-/// How scenes are looked at.
+/// Which pictures of scenes are read.
 #[derive(Debug, Clone, clap::Args)]
-pub struct Look {
+pub struct Pictures {
     /// Read pictures of a scene below this folder; without it those that lie outside the scene's own folder are unknown.
     #[arg(long, value_name = "DIR")]
     pub(super) root: Option<PathBuf>,
-    /// Largest picture that is read, in pixels: four bytes of memory each. Larger ones are unknown.
-    #[arg(long, value_name = "N", default_value_t = planning::PIXELS, value_parser = clap::value_parser!(u64).range(1..=1 << 32))]
-    pixels: u64,
-    /// Tables go so far beyond the roughness of the scenes, on either side.
-    #[arg(long, value_name = "ROUGHNESS", default_value = "0", value_parser = margin)]
-    margin: f64,
+    /// Largest picture that is read, in pixels: four bytes of memory each; 67108864 (8192 x 8192) if not given. Larger ones are
+    /// unknown.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1 << 32))]
+    pixels: Option<u64>,
+}
+
+/// How scenes are looked at.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Look {
+    #[command(flatten)]
+    pub(super) pictures: Pictures,
+    /// Tables go so far beyond the roughness of the scenes, on either side; 0 if not given.
+    #[arg(long, value_name = "ROUGHNESS", value_parser = margin)]
+    margin: Option<f64>,
     /// Keep in this folder what was found in scenes, and read only those that changed since.
     #[arg(long, value_name = "DIR")]
     keep: Option<PathBuf>,
 }
 
-impl Look {
+impl Pictures {
     /// Root and limits, for a shader that takes roughness like this.
     pub(super) fn options(&self, reader: Reader) -> SurveyOptions {
-        SurveyOptions { root: self.root.clone(), pixels: self.pixels, reader }
+        let pixels = self.pixels.unwrap_or(planning::PIXELS);
+        SurveyOptions { root: self.root.clone(), pixels, reader }
+    }
+}
+
+impl Look {
+    /// An option that says something of scenes, if one is given.
+    pub(super) fn given(&self) -> Option<&'static str> {
+        let options = [
+            ("--root", self.pictures.root.is_some()),
+            ("--pixels", self.pictures.pixels.is_some()),
+            ("--margin", self.margin.is_some()),
+            ("--keep", self.keep.is_some()),
+        ];
+        options.into_iter().find(|(_, given)| *given).map(|(name, _)| name)
     }
 }
 
@@ -70,9 +92,9 @@ pub(super) fn job(
     let reader = Reader {
         at_least: roughness.map_or(0.0, |r| r.at_least),
         widens: roughness.is_some_and(|r| r.widens),
-        margin: look.margin,
+        margin: look.margin.unwrap_or(0.0),
     };
-    let options = look.options(reader);
+    let options = look.pictures.options(reader);
     let mut kept = look.keep.as_deref().map_or_else(Kept::default, |folder| Kept::read(folder, &options));
     let found = pool(jobs)?.install(|| planning::survey_with(&files, &options, &mut kept));
     let (survey, read) = found.map_err(|e| refused(&e))?;

@@ -69,7 +69,7 @@ pub(super) fn check(args: &SceneWrite, look: &Look, scenes: &[PathBuf]) -> Resul
     let convert = args.replace.then(|| args.spec_gloss.into());
     let mut all: Vec<(Target, Request)> = Vec::new();
     for scene in scene::files(scenes)? {
-        let root = look.root.clone();
+        let root = look.pictures.root.clone();
         let request = Request { place, convert, root, ..Request::new(scene, to) };
         let target = Target::of(&request)?;
         if all.iter().any(|(other, _)| *other == target) {

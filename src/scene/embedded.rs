@@ -3,11 +3,11 @@
 //! Source: glTF 2.0 §3.8.3 (images), §3.6.1 (buffers and views), RFC 2397 (`data:`).
 
 use super::Limits;
+use super::data::decode;
 use super::error::Fault;
 use super::image::{Image, Source};
 use super::json::Node;
 use super::uri::{Checked, check_uri};
-use data_url::DataUrl;
 use std::collections::BTreeSet;
 
 /// Extensions of a texture that name an image of their own, in the order in which they are looked at after the core `source`.
@@ -60,11 +60,7 @@ fn at_uri(uri: &Node<'_>, part: Option<[u64; 2]>, limits: &Limits) -> Result<Sou
     match check_uri(text, limits.data_uri_bytes).map_err(fault)? {
         Checked::Inside(names) | Checked::Above(names) => Ok(Source::File { names, part }),
         Checked::Data { .. } => {
-            let bytes = DataUrl::process(text).ok().and_then(|url| url.decode_to_vec().ok());
-            let Some((bytes, _)) = bytes else {
-                return Ok(Source::Missing("its `data:` URI is no base64".to_owned()));
-            };
-            Ok(cut(&bytes, part))
+            Ok(decode(text).map_or_else(|e| Source::Missing(e.to_string()), |bytes| cut(&bytes, part)))
         }
     }
 }

@@ -2,9 +2,10 @@
 
 use super::convert::ConvertError;
 use crate::pipeline::transaction::TransactionError;
+use crate::scene::DataError;
 use crate::scene::SceneError;
 use crate::scene::UriError;
-use crate::scene::write::{DataError, DraftError};
+use crate::scene::write::DraftError;
 use std::io;
 use std::path::PathBuf;
 

@@ -2,7 +2,8 @@
 
 use super::{Request, SceneWriteError};
 use crate::math::shown::show;
-use crate::scene::write::{Draft, Reference, decode_data, escape, references};
+use crate::scene::decode_data;
+use crate::scene::write::{Draft, Reference, escape, references};
 use crate::scene::{Checked, check_uri, resolve};
 use std::fmt;
 use std::fs;

@@ -9,14 +9,12 @@
 //! their own, and so they do beside a GLB whose first buffer is not its binary chunk. KTX2, EXR and their like are never put into
 //! `images`, where glTF does not allow them: the extension has a `uri` or a `bufferView` of its own.
 
-mod data;
 pub mod edit;
 pub mod glb;
 pub mod raw;
 mod references;
 pub mod tables;
 
-pub use data::{DataError, decode as decode_data};
 pub use edit::{EditError, Json, Patch, edit};
 pub use glb::{Parts, TooLarge};
 pub use raw::Raw;
