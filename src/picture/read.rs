@@ -1,8 +1,9 @@
-//! PNG and JPEG. The other containers are read by `encode`.
+//! PNG and JPEG, and WebP for its levels. The other containers are read by `encode`.
 
 use super::{MAX_PIXELS, Picture, PictureError, Plane};
 use image::codecs::jpeg::JpegDecoder;
 use image::codecs::png::PngDecoder;
+use image::codecs::webp::WebPDecoder;
 use image::{ImageDecoder, Limits};
 use std::io::Cursor;
 
@@ -12,45 +13,111 @@ pub const MAGIC: [(&[u8], &str); 2] = [(b"\x89PNG\r\n\x1a\n", "png"), (b"\xff\xd
 /// Most bytes that a decoder may take for rows, text and profiles.
 const MAX_ALLOC: u64 = 1 << 31;
 
+/// Bytes of memory for each pixel that JPEG and WebP take at most: coefficients of three components, and the picture.
+const BYTES_A_PIXEL: u64 = 9;
+
 /// Reads a PNG or JPEG image from memory. Profiles and gamma are left alone: samples are codes as they stand.
 ///
 /// # Errors
 /// [`PictureError`] for what is no sound image of at most [`MAX_PIXELS`].
 pub fn read_bytes(bytes: &[u8]) -> Result<Picture, PictureError> {
-    let Some((_, format)) = MAGIC.iter().find(|(magic, _)| bytes.starts_with(magic)) else {
-        return Err(PictureError::Unknown(bytes.iter().copied().take(8).collect()));
-    };
-    let damaged = |fault: String| PictureError::Damaged { format, fault };
-    let library = |e: image::ImageError| damaged(e.to_string());
-    let decode = || {
-        if *format == "png" {
-            planes(PngDecoder::new(Cursor::new(bytes)).map_err(library)?, format)
-        } else {
-            planes(JpegDecoder::new(Cursor::new(bytes)).map_err(library)?, format)
-        }
-    };
-    // decoders can panic on damaged files; that is told as an error
-    std::panic::catch_unwind(decode).unwrap_or_else(|_| Err(damaged("the decoder gave up".to_owned())))
+    read_within(bytes, u64::MAX)
 }
 
-fn planes(mut decoder: impl ImageDecoder, format: &'static str) -> Result<Picture, PictureError> {
-    let (w, h) = decoder.dimensions();
-    let (width, height) = (w as usize, h as usize);
-    let pixels = width.saturating_mul(height);
-    if pixels == 0 || pixels > MAX_PIXELS {
-        return Err(PictureError::Pixels { width, height });
-    }
-    let library = |e: image::ImageError| PictureError::Damaged { format, fault: e.to_string() };
-    let mut limits = Limits::default();
-    limits.max_alloc = Some(MAX_ALLOC);
-    decoder.set_limits(limits).map_err(library)?;
-    let samples = Samples::read(decoder, pixels).map_err(library)?;
+/// As [`read_bytes`], of an image that takes no more than `limit` bytes to decode.
+///
+/// # Errors
+/// As [`read_bytes`], and [`PictureError::Memory`].
+pub fn read_within(bytes: &[u8], limit: u64) -> Result<Picture, PictureError> {
+    let allow = |header: &Header| {
+        let (width, height) = (header.width as usize, header.height as usize);
+        if width.saturating_mul(height) > MAX_PIXELS {
+            return Err(PictureError::Pixels { width, height });
+        }
+        header.within(limit)?;
+        Ok(MAX_ALLOC)
+    };
+    decode(bytes, named(bytes), allow, planes)
+}
+
+fn planes(header: &Header, samples: &Samples) -> Picture {
     let one = if samples.are_wide() { 65535.0 } else { 255.0 };
     let plane = |(c, name): (usize, &&str)| Plane {
         name: (*name).to_owned(),
         values: samples.codes(c).map(|code| f32::from(code) / one).collect(),
     };
-    Ok(Picture { width, height, planes: samples.names().iter().enumerate().map(plane).collect() })
+    let planes = samples.names().iter().enumerate().map(plane).collect();
+    Picture { width: header.width as usize, height: header.height as usize, planes }
+}
+
+/// The format of a PNG or JPEG image.
+pub(super) fn named(bytes: &[u8]) -> Option<&'static str> {
+    MAGIC.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, format)| *format)
+}
+
+/// What is known of an image before it is decoded.
+pub(super) struct Header {
+    pub(super) width: u32,
+    pub(super) height: u32,
+    /// Bytes that decoding takes at most, but for rows, tables and profiles.
+    pub(super) needed: u64,
+}
+
+impl Header {
+    /// # Errors
+    /// [`PictureError::Memory`] if it takes more than `limit` bytes.
+    pub(super) fn within(&self, limit: u64) -> Result<(), PictureError> {
+        let Header { width, height, needed } = *self;
+        if needed > limit { Err(PictureError::Memory { width, height, needed, limit }) } else { Ok(()) }
+    }
+}
+
+/// Decodes an image of a format, `png`, `jpeg` or `webp`. `allow` sees the header first, and says how many bytes the decoder may
+/// take.
+pub(super) fn decode<T>(
+    bytes: &[u8],
+    format: Option<&'static str>,
+    allow: impl FnOnce(&Header) -> Result<u64, PictureError>,
+    make: impl FnOnce(&Header, &Samples) -> T,
+) -> Result<T, PictureError> {
+    let Some(format) = format else {
+        return Err(PictureError::Unknown(bytes.iter().copied().take(8).collect()));
+    };
+    let damaged = |fault: String| PictureError::Damaged { format, fault };
+    let library = |e: image::ImageError| damaged(e.to_string());
+    // decoders can panic on damaged files; that is told as an error
+    let all = std::panic::AssertUnwindSafe(|| {
+        let file = Cursor::new(bytes);
+        let (header, samples) = match format {
+            "png" => unpack(PngDecoder::new(file).map_err(library)?, format, 0, allow)?,
+            "webp" => unpack(WebPDecoder::new(file).map_err(library)?, format, BYTES_A_PIXEL, allow)?,
+            _ => unpack(JpegDecoder::new(file).map_err(library)?, format, BYTES_A_PIXEL, allow)?,
+        };
+        Ok(make(&header, &samples))
+    });
+    std::panic::catch_unwind(all).unwrap_or_else(|_| Err(damaged("the decoder gave up".to_owned())))
+}
+
+fn unpack(
+    mut decoder: impl ImageDecoder,
+    format: &'static str,
+    bytes_a_pixel: u64,
+    allow: impl FnOnce(&Header) -> Result<u64, PictureError>,
+) -> Result<(Header, Samples), PictureError> {
+    let (width, height) = decoder.dimensions();
+    let pixels = u64::from(width).saturating_mul(u64::from(height));
+    let needed = decoder.total_bytes().max(pixels.saturating_mul(bytes_a_pixel));
+    let size = usize::try_from(pixels).ok().filter(|n| *n > 0 && usize::try_from(needed).is_ok());
+    let Some(size) = size else {
+        return Err(PictureError::Pixels { width: width as usize, height: height as usize });
+    };
+    let header = Header { width, height, needed };
+    let library = |e: image::ImageError| PictureError::Damaged { format, fault: e.to_string() };
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(allow(&header)?);
+    decoder.set_limits(limits).map_err(library)?;
+    let samples = Samples::read(decoder, size).map_err(library)?;
+    Ok((header, samples))
 }
 
 /// A decoded image: codes of 8 or 16 bits, all channels of a pixel together. Greys of fewer bits and palettes are unfolded to 8.

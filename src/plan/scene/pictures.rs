@@ -65,12 +65,7 @@ impl Pictures {
     pub fn picture(&self, scene: &Scene, image: usize, folder: &Path) -> Result<Picture, String> {
         let found = scene.images.iter().find(|i| i.index == image);
         let image = found.ok_or_else(|| format!("images[{image}] is not read"))?;
-        self.with(image, folder, |bytes| {
-            // the header is looked at first
-            picture::levels(bytes, |needed| if needed > self.limit { Err(self.limit) } else { Ok(()) })
-                .and_then(|_| picture::read_bytes(bytes))
-                .map_err(|e| e.to_string())
-        })
+        self.with(image, folder, |bytes| picture::read_within(bytes, self.limit).map_err(|e| e.to_string()))
     }
 
     /// What is made of the bytes of an image.
