@@ -77,7 +77,8 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
             "{option} says how scenes are read, and there is none; name one with --scene"
         )));
     }
-    let mut written = scene_write::check(&args.write, &args.look, &args.scene)?;
+    let scenes = scene::files(&args.scene)?;
+    let mut written = scene_write::check(&args.write, &args.look, &scenes)?;
     let engine = args.engine.as_deref().map(engine::plan).transpose()?;
     if let (Some((engine, plan)), Some(error)) = (&engine, args.suggest) {
         return suggest::run(
@@ -97,7 +98,7 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         }
     } else {
         let entry = engine.as_ref().map(|(engine, _)| *engine);
-        let job = scene::job(&args.scene, &args.look, engine, args.limits.jobs())?;
+        let job = scene::job(&scenes, &args.look, engine, args.limits.jobs())?;
         match args.message_format {
             Format::Json => output::data(&scene::json(&job).to_string()).map(|_| ())?,
             Format::Human if args.quiet => {}

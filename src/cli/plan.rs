@@ -35,7 +35,7 @@ pub struct Args {
 /// [`Failure`] for a scene that is refused, or an engine that is not known.
 pub fn run(args: &Args) -> Result<Exit, Failure> {
     let engine = args.engine.as_deref().map(engine::plan).transpose()?;
-    let job = scene::job(&args.scenes, &args.look, engine, args.jobs.map(usize::from))?;
+    let job = scene::job(&scene::files(&args.scenes)?, &args.look, engine, args.jobs.map(usize::from))?;
     let costs: Vec<Cost> = job.plan.tables.iter().map(cost::of).collect();
     if args.json {
         let mut all = scene::json(&job);

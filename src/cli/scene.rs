@@ -3,8 +3,8 @@
 use super::{Exit, Failure, output};
 use crate::math::figures::short;
 use crate::pipeline::pool;
-use crate::plan::Plan;
 use crate::plan::scene::{self as planning, Asked, Kept, ScenePlanError, Survey, SurveyOptions};
+use crate::plan::{Plan, PlannedTable};
 use crate::recipe::Engine;
 use crate::scene::{Fault, LeftOut, LeftOutKind, Need, Reader, SceneError};
 use std::path::{Path, PathBuf};
@@ -82,12 +82,11 @@ impl Job {
 
 /// Reads scenes, tells what they need, and plans the tables.
 pub(super) fn job(
-    paths: &[PathBuf],
+    files: &[PathBuf],
     look: &Look,
     engine: Option<(&'static Engine, Plan)>,
     jobs: Option<usize>,
 ) -> Result<Job, Failure> {
-    let files = files(paths)?;
     let roughness = engine.as_ref().map(|(engine, _)| engine.roughness);
     let reader = Reader {
         at_least: roughness.map_or(0.0, |r| r.at_least),
@@ -96,14 +95,14 @@ pub(super) fn job(
     };
     let options = look.pictures.options(reader);
     let mut kept = look.keep.as_deref().map_or_else(Kept::default, |folder| Kept::read(folder, &options));
-    let found = pool(jobs)?.install(|| planning::survey_with(&files, &options, &mut kept));
+    let found = pool(jobs)?.install(|| planning::survey_with(files, &options, &mut kept));
     let (survey, read) = found.map_err(|e| refused(&e))?;
     if let Some(folder) = &look.keep {
         kept.write(folder).map_err(|e| Failure::io(folder.display(), &e))?;
     }
     let asked = planning::asked(&survey.needs).map_err(unplanned)?;
     let (plan, dropped) = match engine {
-        None => (planning::plan(&survey.needs).map_err(unplanned)?, Vec::new()),
+        None => (planning::plan_of(&asked).map_err(unplanned)?, Vec::new()),
         Some((_, plan)) => {
             let (plan, dropped) = needed(plan, &survey);
             (Some(plan), dropped)
@@ -116,10 +115,8 @@ pub(super) fn job(
 
 /// The tables of an engine that serve what the scenes need.
 fn needed(plan: Plan, survey: &Survey) -> (Plan, Vec<String>) {
-    let needs = |table: &crate::plan::PlannedTable| {
-        let spec = &table.bound.spec;
-        planning::served(spec.kind.id, spec.model.as_ref().map(|(info, _)| info.id))
-            .any(|family| survey.needs.needs.iter().any(|n| n.table == family))
+    let needs = |table: &PlannedTable| {
+        planning::served(table).any(|family| survey.needs.needs.iter().any(|n| n.table == family))
     };
     let dropped = plan.tables.iter().filter(|t| !needs(t)).map(|t| t.name().to_owned()).collect();
     (plan.only(needs), dropped)

@@ -1,7 +1,7 @@
 //! `brdfbake bake --scene SCENE --write PATH`: the scene with the tables that were baked for it.
 
 use super::scene::{Job, Look};
-use super::{Exit, Failure, output, scene};
+use super::{Exit, Failure, output};
 use crate::cancel::{Cancel, Cancelled};
 use crate::math::figures::{short, significant};
 use crate::math::shown::show;
@@ -68,7 +68,7 @@ pub(super) fn check(args: &SceneWrite, look: &Look, scenes: &[PathBuf]) -> Resul
     };
     let convert = args.replace.then(|| args.spec_gloss.into());
     let mut all: Vec<(Target, Request)> = Vec::new();
-    for scene in scene::files(scenes)? {
+    for scene in scenes {
         let root = look.pictures.root.clone();
         let request = Request { place, convert, root, ..Request::new(scene, to) };
         let target = Target::of(&request)?;
@@ -87,11 +87,8 @@ pub(super) fn serve(requests: &mut [Request], job: &Job, engine: bool) {
     for (request, surveyed) in requests.iter_mut().zip(&job.survey.scenes) {
         for need in &job.survey.needs.needs {
             let names: Vec<String> = if engine {
-                let serves = |table: &&PlannedTable| {
-                    let spec = &table.bound.spec;
-                    let model = spec.model.as_ref().map(|(info, _)| info.id);
-                    planning::served(spec.kind.id, model).any(|family| family == need.table)
-                };
+                let serves =
+                    |table: &&PlannedTable| planning::served(table).any(|family| family == need.table);
                 job.plan.tables.iter().filter(serves).map(|t| t.name().to_owned()).collect()
             } else {
                 let own = job.asked.iter().filter(|asked| asked.family == need.table);

@@ -7,12 +7,13 @@ mod rules;
 mod texels;
 
 pub use parts::{Parts, Stack};
-pub use rules::{Breaks, RULES, Rule, find};
+pub use rules::{Breaks, RULES, Rule};
 pub use texels::{MaterialTexels, Texel};
 
 use crate::plan::scene::{Pictures, SurveyOptions};
 use crate::scene::{Limits, MaterialRef, SceneError, read};
 use serde::Serialize;
+use std::collections::HashMap;
 use std::path::Path;
 
 /// How materials are judged.
@@ -91,23 +92,18 @@ pub fn review(path: &Path, parts: &Parts, judging: &Judging) -> Result<Review, S
 
 /// Every rule over every texel of a material.
 fn judge(texels: &MaterialTexels, parts: &Parts, judging: &Judging, by: &MaterialRef) -> Vec<Broken> {
+    let distinct = distinct(texels);
     let mut all = Vec::new();
     for (rule, bound) in &judging.rules {
         let mut count = 0;
         let mut worst: Option<(f64, usize, f64)> = None;
-        // texels repeat: what a texel holds decides, not where it lies
-        let mut known = std::collections::HashMap::new();
-        for i in 0..texels.len() {
-            let texel = texels.get(i);
-            let value = *known
-                .entry(texel.key())
-                .or_insert_with(|| (rule.measure)(&texel, &Stack { texel: &texel, parts }));
-            let Some(value) = value else { continue };
+        for (texel, first, times) in &distinct {
+            let Some(value) = (rule.measure)(texel, &Stack { texel, parts }) else { continue };
             let beyond = rule.breaks.by(value, *bound);
             if beyond > 0.0 {
-                count += 1;
+                count += times;
                 if worst.is_none_or(|(most, ..)| beyond > most) {
-                    worst = Some((beyond, i, value));
+                    worst = Some((beyond, *first, value));
                 }
             }
         }
@@ -116,6 +112,21 @@ fn judge(texels: &MaterialTexels, parts: &Parts, judging: &Judging, by: &Materia
             let texel = [i % texels.width, i / texels.width];
             let material = by.clone();
             all.push(Broken { material, rule: rule.id, bound: *bound, count, share, texel, value });
+        }
+    }
+    all
+}
+
+/// Texels repeat, and what a texel holds decides, not where it lies: each once, with the number of the first, and how many there are.
+fn distinct(texels: &MaterialTexels) -> Vec<(Texel, usize, usize)> {
+    let mut all: Vec<(Texel, usize, usize)> = Vec::new();
+    let mut places = HashMap::new();
+    for i in 0..texels.len() {
+        let texel = texels.get(i);
+        let place = *places.entry(texel.key()).or_insert(all.len());
+        match all.get_mut(place) {
+            Some((.., times)) => *times += 1,
+            None => all.push((texel, i, 1)),
         }
     }
     all

@@ -34,6 +34,7 @@ mod survey;
 
 use super::request::TableRequest;
 use super::resolve::{Plan, PlanError};
+use super::table::PlannedTable;
 use crate::scene::{Need, Needs};
 use axes::Draft;
 use serde::Serialize;
@@ -151,20 +152,28 @@ pub fn requests(needs: &Needs) -> Result<Vec<TableRequest>, ScenePlanError> {
 /// # Errors
 /// [`ScenePlanError`] as [`requests`], and for requests that do not resolve.
 pub fn plan(needs: &Needs) -> Result<Option<Plan>, ScenePlanError> {
-    let requests = requests(needs)?;
-    if requests.is_empty() {
-        return Ok(None);
-    }
-    Ok(Some(Plan::from_requests(NAME, requests)?))
+    plan_of(&asked(needs)?)
 }
 
-/// The families that a table of a kind and model serves.
-pub fn served(kind: &str, model: Option<&str>) -> impl Iterator<Item = &'static str> {
+/// The plan of what scenes asked for; none if that is nothing.
+///
+/// # Errors
+/// [`ScenePlanError::Plan`] for requests that do not resolve.
+pub fn plan_of(asked: &[Asked]) -> Result<Option<Plan>, ScenePlanError> {
+    if asked.is_empty() {
+        return Ok(None);
+    }
+    Ok(Some(Plan::from_requests(NAME, asked.iter().map(|a| a.request.clone()).collect())?))
+}
+
+/// The families that a table serves, by its kind and model.
+pub fn served(table: &PlannedTable) -> impl Iterator<Item = &'static str> {
+    let spec = &table.bound.spec;
+    let (kind, model) = (spec.kind.id, spec.model.as_ref().map(|(info, _)| info.id));
     let serves = move |f: &&Family| {
         f.serves.iter().any(|(k, m)| *k == kind && m.is_none_or(|m| model.is_none_or(|model| m == model)))
     };
-    let ids: Vec<&'static str> = FAMILIES.iter().filter(serves).map(|f| f.id).collect();
-    ids.into_iter()
+    FAMILIES.iter().filter(serves).map(|f| f.id)
 }
 
 /// Tolerance of albedos, which are divided by: a part in a million of white.
