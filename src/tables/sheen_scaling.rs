@@ -63,9 +63,12 @@ pub static INFO: TableInfo = TableInfo {
     bind,
 };
 
+/// Where the roughness of sheen begins, glTF's: the clamp of productions, r = 0.073. Below it E exceeds 1 at grazing views.
+pub const LEAST_SHEEN_ROUGHNESS: f64 = 0.27;
+
 fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
     let mu = axis("mu", 64, [1e-3, 1.0], Warp::Power(0.25));
-    let roughness = axis("sheen_roughness", 32, [0.27, 1.0], Warp::Linear);
+    let roughness = axis("sheen_roughness", 32, [LEAST_SHEEN_ROUGHNESS, 1.0], Warp::Linear);
     [mu, roughness].into_iter().flatten().collect()
 }
 

@@ -66,19 +66,19 @@ fn the_albedo_of_the_stack_is_that_of_the_model() {
         seen.push(Texel { coat: 0.75, coat_roughness: 0.2, ..bare });
     }
     for texel in seen {
-        let ours = Stack { texel: &texel, parts: parts() }.largest_albedo(true);
+        let ours = Stack { texel: &texel, parts: parts() }.largest_albedo();
         let theirs = model(&texel);
         assert!((ours - theirs).abs() < ROWS, "{ours} against {theirs}: {texel:?}");
     }
     // a white smooth dielectric reflects nearly twice at grazing: its parts are weighed by different factors
-    assert!(Stack { texel: &grey(1.0, 0.1, 0.0), parts: parts() }.largest_albedo(true) > 1.5);
+    assert!(Stack { texel: &grey(1.0, 0.1, 0.0), parts: parts() }.largest_albedo() > 1.5);
 }
 
 #[test]
 fn a_sheen_takes_from_below_what_it_reflects() {
     // the model takes the larger of both directions' albedos: no more is left than by the view's alone
     let texel = Texel { sheen: 0.8, sheen_colour: [0.8; 3], ..grey(0.5, 0.6, 0.0) };
-    let (ours, theirs) = (Stack { texel: &texel, parts: parts() }.largest_albedo(true), model(&texel));
+    let (ours, theirs) = (Stack { texel: &texel, parts: parts() }.largest_albedo(), model(&texel));
     assert!(ours >= theirs - TABLES && ours - theirs < 0.05, "{ours} against {theirs}");
 }
 

@@ -11,6 +11,8 @@ use crate::grid::{Axis, Quantity, Table, Texel as Place, Warp};
 use crate::integrate::gauss;
 use crate::pipeline::{InMemoryError, bake_until};
 use crate::plan::TableRequest;
+use crate::tables::default_axes::LEAST_ROUGHNESS;
+use crate::tables::sheen_scaling::LEAST_SHEEN_ROUGHNESS;
 use crate::tables::spec::Request;
 use crate::terms::schlick;
 use serde_json::json;
@@ -20,13 +22,10 @@ use std::f64::consts::PI;
 const LEAST_MU: f64 = 0.05;
 /// Views.
 const VIEWS: usize = 20;
-/// Rows of roughness, from [`LEAST`] to 1.
+/// Rows of roughness, from [`LEAST_ROUGHNESS`] to 1; smoother lobes are read there.
 const ROWS: usize = 100;
-/// The smoothest row; smoother lobes are read there.
-const LEAST: f64 = 0.01;
 /// Rows of the roughness of sheen, from the clamp of productions to 1.
 const SHEENS: usize = 32;
-const LEAST_SHEEN: f64 = 0.27;
 
 /// Tables of the parts.
 #[derive(Debug)]
@@ -62,10 +61,10 @@ impl Parts {
             let asked = TableRequest { tolerance: Some(1e-5), ..TableRequest::new("part", request) };
             bake_until(cancel, asked).map(|baked| baked.table().clone())
         };
-        let rough = || axis("roughness", ROWS, [LEAST, 1.0]);
+        let rough = || axis("roughness", ROWS, [LEAST_ROUGHNESS, 1.0]);
         let split = table("dfg", "ggx", "scale-bias", [view(), rough()])?;
         let average = table("average-albedo", "ggx", "e-avg", [rough(), None])?;
-        let cloth = axis("sheen_roughness", SHEENS, [LEAST_SHEEN, 1.0]);
+        let cloth = axis("sheen_roughness", SHEENS, [LEAST_SHEEN_ROUGHNESS, 1.0]);
         let sheen = table("sheen-scaling", "charlie", "e", [view(), cloth])?;
         let lost =
             split.grid.axes().first().map(|a| (0..a.len).map(|i| schlick_lost(a.value(i, 0.0))).collect());
@@ -123,9 +122,9 @@ pub struct Stack<'a> {
 }
 
 impl Stack<'_> {
-    /// The largest albedo over views and channels, without the coat or with it.
+    /// The largest albedo over views and channels.
     #[must_use]
-    pub fn largest_albedo(&self, with_coat: bool) -> f64 {
+    pub fn largest_albedo(&self) -> f64 {
         let (t, p) = (self.texel, self.parts);
         let mut most = 0.0_f64;
         for (view, mu) in p.views() {
@@ -139,7 +138,7 @@ impl Stack<'_> {
                 let dielectric = diffuse + t.f0 * scale + bias;
                 let base = dielectric + t.metallic * (metal - dielectric);
                 let clothed = t.sheen_colour[channel] * sheen + (1.0 - t.sheen * sheen) * base;
-                let all = if with_coat && t.coat > 0.0 {
+                let all = if t.coat > 0.0 {
                     let fresnel = 0.04 + 0.96 * schlick::weight(mu);
                     t.coat * fresnel * (coat[0] + coat[1]) + (1.0 - t.coat * fresnel) * clothed
                 } else {

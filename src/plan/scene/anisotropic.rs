@@ -2,12 +2,11 @@
 
 use super::Family;
 use super::axes::Draft;
+use super::ggx::NEAR_MIRROR;
 use crate::scene::{ANISOTROPIC, Need, Range};
 use std::f64::consts::FRAC_PI_2;
 
 pub(super) const FAMILY: Family = Family { id: ANISOTROPIC, requests, serves: &[("albedo", Some("ggx"))] };
-
-const NEAR_MIRROR: &str = "smoother than this is a mirror to the eye (alpha = 1e-4)";
 
 /// Texels over a quarter turn: the albedo is even in both tangents.
 const AZIMUTHS: usize = 17;

@@ -57,9 +57,3 @@ pub static RULES: &[&Rule] = &[
     &smooth::FLOAT,
     &coated_cloth::RULE,
 ];
-
-/// A rule by its id.
-#[must_use]
-pub fn find(id: &str) -> Option<&'static Rule> {
-    RULES.iter().copied().find(|r| r.id == id)
-}

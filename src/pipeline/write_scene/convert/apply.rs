@@ -37,7 +37,6 @@ impl<'a> Writer<'a> {
     pub(super) fn exact(
         &mut self,
         draft: &mut Draft,
-        material: Raw<'_>,
         source: &Source<'_>,
         name: Option<String>,
     ) -> Result<Converted, SceneWriteError> {
@@ -73,7 +72,6 @@ impl<'a> Writer<'a> {
         extensions.member(NAME).remove();
         extensions.member(EXACT[0]).set(object(&specular)?);
         extensions.member(EXACT[1]).set(json!({ "ior": 0 }));
-        let _ = material;
         Ok(Converted {
             material: source.material,
             name,

@@ -181,7 +181,7 @@ pub(super) fn convert(
         let source = read::Source::of(own, index, &images)?;
         let name = material.get("name").and_then(|n| n.value().as_str().map(str::to_owned));
         out.push(match mode {
-            Mode::Exact => writer.exact(draft, material, &source, name)?,
+            Mode::Exact => writer.exact(draft, &source, name)?,
             Mode::Solve => writer.solve(draft, material, &source, name)?,
         });
     }
