@@ -11,14 +11,14 @@
 use crate::tolerance::{LOBE_DIGITS, SINGLE_ANGLES};
 use brdfbake::cancel::Cancel;
 use brdfbake::encode::Storage;
-use brdfbake::maps::{Centre, Convention, Effort, Objective, Settings, Shape, rules};
-use brdfbake::picture::{Picture, Space, Wrap, read_bytes};
+use brdfbake::maps::{Centre, Effort, Objective, Shape};
+use brdfbake::picture::{Picture, read_bytes};
 use brdfbake::pipeline::map::{Input, MapOutcome, MapRequest, Output, RoughnessInput, run};
 use brdfbake::pipeline::{self, audit};
 use std::path::{Path, PathBuf};
 
 /// An 8-bit PNG.
-fn picture(
+pub(crate) fn picture(
     folder: &Path,
     name: &str,
     size: [u32; 2],
@@ -39,47 +39,23 @@ fn picture(
 }
 
 /// Codes of the normal of a slope.
-fn normal_code(slope: [f64; 2], c: usize) -> u8 {
+pub(crate) fn normal_code(slope: [f64; 2], c: usize) -> u8 {
     let length = (1.0 + slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
     let n = [-slope[0] / length, -slope[1] / length, 1.0 / length];
     ((n[c] * 0.5 + 0.5) * 255.0).round() as u8
 }
 
-fn image(path: PathBuf, single: bool) -> RoughnessInput {
-    RoughnessInput::Image {
-        path,
-        channel: "G".into(),
-        space: Space::Linear,
-        gloss: false,
-        single,
-        from: None,
-    }
+fn image(path: PathBuf) -> RoughnessInput {
+    RoughnessInput::new(path)
+}
+
+fn output(text: &str) -> Output {
+    Output::parse(text).unwrap()
 }
 
 fn request(normal: Option<PathBuf>, roughness: RoughnessInput) -> MapRequest {
-    MapRequest {
-        name: "m".into(),
-        normal: normal.map(|path| Input {
-            path,
-            channels: ["R", "G", "B"].map(str::to_owned),
-            convention: Convention::default(),
-            signed: false,
-            wrap: [Wrap::Repeat; 2],
-            resample: false,
-        }),
-        roughness,
-        factor: 1.0,
-        filter: Settings {
-            rule: rules::rule("fit").unwrap(),
-            centre: Centre::Mean,
-            shape: Shape::Isotropic,
-            effort: Effort::Fast,
-            objective: Objective::Normals,
-        },
-        outputs: vec![Output::new("png")],
-        check: 16,
-        compare: false,
-    }
+    let request = MapRequest::new("m", normal.map(Input::new), roughness);
+    MapRequest { outputs: vec![output("png")], check: 16, ..request }
 }
 
 fn bake(request: &MapRequest, out: &Path) -> MapOutcome {
@@ -102,7 +78,7 @@ fn constant_maps_are_left_to_the_bit() {
     for (name, blue) in [("flat.png", 255), ("short.png", 253)] {
         let normal = picture(dir.path(), name, [8, 4], 3, |_, _, c| if c == 2 { blue } else { 128 });
         for rule in brdfbake::maps::RULES {
-            let mut request = request(Some(normal.clone()), image(roughness.clone(), false));
+            let mut request = request(Some(normal.clone()), image(roughness.clone()));
             request.filter.rule = rule;
             let out = dir.path().join(rule.id);
             let done = bake(&request, &out);
@@ -135,7 +111,7 @@ fn the_reference_of_reflected_light_is_found() {
     let first = picture(dir.path(), "p.png", [2, 2], 3, |x, y, c| normal_code(pyramid(x, y), c));
     let second = picture(dir.path(), "d.png", [2, 2], 3, |x, y, c| normal_code(ridge(x, y), c));
     for (normal, expected, error) in [(first, 0.6134, 0.1232), (second.clone(), 0.6336, 0.2119)] {
-        let mut request = request(Some(normal), image(roughness.clone(), false));
+        let mut request = request(Some(normal), image(roughness.clone()));
         request.filter.effort = Effort::Exact;
         request.filter.objective = Objective::Reflected;
         let done = bake(&request, &dir.path().join("o"));
@@ -147,11 +123,11 @@ fn the_reference_of_reflected_light_is_found() {
         );
         assert!((f64::from(level.largest) - error).abs() < 0.001, "{}, not {error}", level.largest);
     }
-    let mut request = request(Some(second), image(roughness, false));
+    let mut request = request(Some(second), image(roughness));
     request.filter.effort = Effort::Exact;
     request.filter.objective = Objective::Reflected;
     request.filter.shape = Shape::Anisotropic;
-    request.outputs = vec![Output::new("exr")];
+    request.outputs = vec![output("exr")];
     let out = dir.path().join("a");
     let done = bake(&request, &out);
     let level = &done.record.levels[1];
@@ -186,7 +162,7 @@ fn a_factor_is_inside_the_map() {
         |x: u32, y: u32| [if x.is_multiple_of(2) { s } else { -s }, if y.is_multiple_of(2) { s } else { -s }];
     let normal = picture(dir.path(), "n.png", [4, 4], 3, |x, y, c| normal_code(slope(x, y), c));
     let roughness = picture(dir.path(), "r.png", [4, 4], 1, |_, _, _| 128);
-    let mut request = request(Some(normal), image(roughness, false));
+    let mut request = request(Some(normal), image(roughness));
     request.factor = 0.5;
     let done = bake(&request, dir.path());
     assert!((done.record.levels[0].roughness[0] - 0.5 * 128.0 / 255.0).abs() < SINGLE_ANGLES as f32);
@@ -228,7 +204,7 @@ fn exponents_are_converted_with_their_distance() {
     use brdfbake::pipeline::map::FromLobe;
     let dir = tempfile::tempdir().unwrap();
     let exponents = picture(dir.path(), "n.png", [2, 2], 1, |_, _, _| 255);
-    let mut request = request(None, image(exponents, false));
+    let mut request = request(None, image(exponents));
     let RoughnessInput::Image { from, .. } = &mut request.roughness else { unreachable!() };
     let blinn_phong = conversion("blinn-phong").unwrap();
     *from = Some(FromLobe { conversion: blinn_phong, range: [1.0, 100.0], log: true, by: By::Nearest });
@@ -249,7 +225,7 @@ fn other_channels_keep_their_means() {
         1 => 100,
         _ => 200,
     });
-    bake(&request(Some(normal), image(packed, false)), dir.path());
+    bake(&request(Some(normal), image(packed)), dir.path());
     let first = level(dir.path(), "roughness", 1);
     // 5 x 3 to 2 x 1: (0 + 10 + 20/2)/2.5 = 8 and 32, with the mean 50 of the rows
     assert_eq!(codes(&first, "R"), [58, 82]);
@@ -277,7 +253,7 @@ fn every_container_holds_every_level() {
     let normal = bumps(dir.path(), 16);
     let mut request = request(Some(normal), RoughnessInput::Constant(0.4));
     request.filter.centre = Centre::Free;
-    request.outputs = ["ktx2", "dds", "exr", "png"].map(Output::new).to_vec();
+    request.outputs = ["ktx2", "dds", "exr", "png"].map(output).to_vec();
     request.outputs[0].normal = Storage::Bc5;
     request.outputs[0].roughness = Storage::Bc4;
     let out = dir.path().join("o");
@@ -390,9 +366,9 @@ fn bad_input_is_told_and_nothing_is_written() {
         message.contains("hole.png: level 0, texel (2, 1): the normal points along the surface or into it"),
         "{message}"
     );
-    let message = fails(&request(Some(sound.clone()), image(small.clone(), false)));
+    let message = fails(&request(Some(sound.clone()), image(small.clone())));
     assert!(
-        message.contains("sound.png has 4 x 4 texels") && message.contains("small.png has 2 x 2"),
+        message.contains("sound.png has 4 x 4 texels") && message.contains("small.png has 2 x 2:"),
         "{message}"
     );
     let message = fails(&request(Some(cut), RoughnessInput::Constant(0.5)));
@@ -400,7 +376,7 @@ fn bad_input_is_told_and_nothing_is_written() {
     let message = fails(&request(Some(dir.path().join("none.png")), RoughnessInput::Constant(0.5)));
     assert!(message.contains("none.png"), "{message}");
     let message = fails(&request(Some(sound.clone()), RoughnessInput::Constant(1.5)));
-    assert_eq!(message, "roughness = 1.5 outside [0, 1]");
+    assert_eq!(message, "map[0].roughness: roughness = 1.5 is out of range; allowed: 0 to 1");
     let message = fails(&request(None, RoughnessInput::Constant(0.5)));
     assert!(message.contains("nothing to filter"), "{message}");
     let mut wrong = request(Some(sound.clone()), RoughnessInput::Constant(0.5));
@@ -408,12 +384,12 @@ fn bad_input_is_told_and_nothing_is_written() {
     let message = fails(&wrong);
     assert!(message.contains("no channel `Z`; there is R, G, B"), "{message}");
     // a packed map in one block channel
-    let mut packed = request(None, image(sound.clone(), false));
-    packed.outputs = vec![Output { roughness: Storage::Bc4, ..Output::new("ktx2") }];
+    let mut packed = request(None, image(sound.clone()));
+    packed.outputs = vec![output("ktx2:roughness=bc4")];
     let message = fails(&packed);
     assert!(message.contains("cannot hold 3 channels"), "{message}");
     // mended, resampled
-    let mut mended = request(Some(hole), image(small, false));
+    let mut mended = request(Some(hole), image(small));
     mended.normal.as_mut().unwrap().convention.mend = true;
     mended.normal.as_mut().unwrap().resample = true;
     bake(&mended, &out);
@@ -428,7 +404,7 @@ fn a_number_that_is_none_is_told() {
     write_rgb_file(&path, 3, 2, |x, y| (0.0f32, if (x, y) == (1, 1) { f32::NAN } else { 0.5 }, 0.0f32))
         .unwrap();
     let failed = run(
-        &request(None, image(path, true)),
+        &request(None, image(path)),
         &pipeline::Settings::new(dir.path().join("out")),
         &Cancel::new(),
         &|_, _| {},

@@ -5,4 +5,6 @@ mod counted;
 mod footprints;
 mod map_files;
 mod map_pictures;
+mod map_recipes;
+mod map_scenes;
 mod tolerance;

@@ -124,7 +124,7 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
             if let Some(engine) = engine.filter(|_| args.talks()) {
                 engine::report(engine, &outcome);
             }
-            let any = !outcome.manifest.tables.is_empty();
+            let any = !outcome.manifest.tables.is_empty() || !outcome.manifest.maps.is_empty();
             let bake = any.then_some(Bake { manifest: &outcome.manifest, folder: &args.out });
             scene_write::run(&written, bake, &settings, cancel, args.talks())?;
             Ok(Exit::Done)

@@ -126,6 +126,10 @@ impl From<FitError> for Failure {
 
 impl From<PipelineError> for Failure {
     fn from(error: PipelineError) -> Failure {
+        if let PipelineError::Map { map, error } = error {
+            let failure = Failure::from(*error);
+            return Failure { message: format!("map {map}: {}", failure.message), ..failure };
+        }
         let exit = match &error {
             PipelineError::Bake { error: BakeError::Cancelled(_), .. }
             | PipelineError::Cancelled(_)

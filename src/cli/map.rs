@@ -1,18 +1,17 @@
 //! `brdfbake map`: parameter maps with filtered levels, and how far each level is from the texels that it stands for.
 
 use super::limits::Limits;
-use super::{Exit, Failure, output};
+use super::{Exit, Failure, map_options, output};
 use crate::cancel::Cancel;
-use crate::encode::Storage;
-use crate::encode::mips::{CONTAINERS, storages};
+use crate::encode::mips::containers;
 use crate::functions::conversion::{By, CONVERSIONS};
-use crate::maps::{self, Centre, Convention, Effort, Objective, RULES, Shape, rules};
+use crate::maps::{Centre, Convention, Effort, Objective, RULES, Shape, rules};
 use crate::math::figures::short;
 use crate::math::nearest::hint;
 use crate::picture::{Space, Wrap};
-use crate::pipeline::map::{
-    FromLobe, Input, MapError, MapOutcome, MapRequest, Output, RoughnessInput, run as filter,
-};
+use crate::pipeline::map::{MapError, MapOutcome, run as filter};
+use crate::plan::Fault;
+use crate::plan::map::{FromLobe, Input, MapRequest, Output, Packing, RoughnessInput};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::path::PathBuf;
@@ -54,6 +53,9 @@ pub struct Args {
     /// Write the roughness alone, without the channels that it is packed with.
     #[arg(long)]
     single: bool,
+    /// Write roughness in G, with occlusion in R and metallic in B as glTF has them; 1 where there is none.
+    #[arg(long, conflicts_with = "single")]
+    gltf: bool,
     /// Channels of the normal.
     #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', default_values = ["R", "G", "B"])]
     normal_channels: Vec<String>,
@@ -72,7 +74,7 @@ pub struct Args {
     /// Take texels without a direction above the surface as flat (padding that was left black).
     #[arg(long)]
     mend_normals: bool,
-    /// Bring a normal map of another size to that of the roughness map.
+    /// Bring the smaller of both maps to the size of the larger one.
     #[arg(long)]
     resample: bool,
     /// What lies beyond the border, where a map is resampled.
@@ -93,8 +95,8 @@ pub struct Args {
     /// What the fit makes small: D of the distributions of normals, or the error of the reflected light in four views (slow).
     #[arg(long, value_enum, default_value = "normals")]
     objective: Aim,
-    /// Containers: ktx2, dds, exr, png.
-    #[arg(short, long, value_name = "LIST", value_delimiter = ',', default_values = ["ktx2"])]
+    /// Containers, each with storages or not (`ktx2:roughness=bc4+normal=bc5`).
+    #[arg(short, long, value_name = "LIST", value_delimiter = ',', default_values = ["ktx2"], long_help = formats())]
     format: Vec<String>,
     /// Storage of the roughness; of the container, if not given (unorm8, in EXR float).
     #[arg(long, value_name = "STORAGE")]
@@ -176,42 +178,40 @@ fn request(args: &Args) -> Result<MapRequest, Failure> {
         let hint = hint(&args.rule, ids.iter().copied());
         Failure::usage(format!("--rule {}: no such rule; there is {}{hint}", args.rule, ids.join(", ")))
     })?;
-    if args.anisotropic && !rule.anisotropic {
-        return Err(Failure::usage(format!("--anisotropic: rule {} knows one width", rule.id)));
-    }
-    let fits = matches!(rule.method, rules::Method::Fit);
-    if args.normals == Normals::Fit && !fits {
-        return Err(Failure::usage(format!("--normals fit: rule {} stands about the mean normal", rule.id)));
-    }
-    if args.objective == Aim::Reflected && !fits {
-        return Err(Failure::usage(format!("--objective reflected: rule {} is no search", rule.id)));
-    }
     if !args.normal_scale.is_finite() || args.normal_scale < 0.0 {
         return Err(Failure::usage(format!("--normal-scale {} must not be negative", args.normal_scale)));
     }
-    if args.name.is_empty() || args.name.contains(['/', '\\', '\0']) || args.name.starts_with('.') {
-        return Err(Failure::usage(format!("--name `{}` is not how a file name begins", args.name)));
-    }
-    Ok(MapRequest {
-        name: args.name.clone(),
-        normal: args.normal.as_ref().map(|path| normal(args, path)).transpose()?,
-        roughness: roughness(args)?,
-        factor: args.factor,
-        filter: maps::Settings {
-            rule,
-            centre: if args.normals == Normals::Fit { Centre::Free } else { Centre::Mean },
-            shape: if args.anisotropic { Shape::Anisotropic } else { Shape::Isotropic },
-            effort: if args.exact { Effort::Exact } else { Effort::Fast },
-            objective: if args.objective == Aim::Reflected {
-                Objective::Reflected
-            } else {
-                Objective::Normals
-            },
-        },
-        outputs: args.format.iter().map(|id| format(args, id)).collect::<Result<_, _>>()?,
-        check: args.check,
-        compare: args.compare,
-    })
+    let packing = match (args.single, args.gltf) {
+        (true, _) => Packing::Single,
+        (_, true) => Packing::Gltf,
+        _ => Packing::Image,
+    };
+    let normal = args.normal.as_ref().map(|path| normal(args, path)).transpose()?;
+    let mut request = MapRequest::new(&args.name, normal, roughness(args)?);
+    let filter = &mut request.filter;
+    filter.rule = rule;
+    filter.centre = if args.normals == Normals::Fit { Centre::Free } else { Centre::Mean };
+    filter.shape = if args.anisotropic { Shape::Anisotropic } else { Shape::Isotropic };
+    filter.effort = if args.exact { Effort::Exact } else { Effort::Fast };
+    filter.objective =
+        if args.objective == Aim::Reflected { Objective::Reflected } else { Objective::Normals };
+    let (factor, check, compare) = (args.factor, args.check, args.compare);
+    let outputs = args.format.iter().map(|text| format(args, text)).collect::<Result<_, _>>()?;
+    Ok(MapRequest { packing, factor, outputs, check, compare, ..request })
+}
+
+/// The help of `--format`, with the containers that there are.
+fn formats() -> String {
+    let all: Vec<String> = containers()
+        .map(|e| {
+            let storages: Vec<&str> = e.mip_storages().iter().map(|s| s.id()).collect();
+            format!("{} ({})", e.id(), storages.join(", "))
+        })
+        .collect();
+    format!(
+        "Containers, each with storages or not (`ktx2:roughness=bc4+normal=bc5`); those of maps are {}",
+        all.join("; ")
+    )
 }
 
 fn normal(args: &Args, path: &std::path::Path) -> Result<Input, Failure> {
@@ -229,7 +229,7 @@ fn normal(args: &Args, path: &std::path::Path) -> Result<Input, Failure> {
     names.resize(3, String::new());
     let [x, y, z] = [0, 1, 2].map(|i| std::mem::take(&mut names[i]));
     Ok(Input {
-        path: path.to_owned(),
+        image: path.to_owned().into(),
         channels: [x, y, z],
         convention: Convention {
             green_down: args.green_down,
@@ -248,11 +248,10 @@ fn roughness(args: &Args) -> Result<RoughnessInput, Failure> {
     Ok(match args.roughness.parse::<f64>() {
         Ok(r) => RoughnessInput::Constant(if args.gloss { 1.0 - r } else { r }),
         Err(_) => RoughnessInput::Image {
-            path: PathBuf::from(&args.roughness),
+            image: PathBuf::from(&args.roughness).into(),
             channel: args.channel.clone(),
             space: if args.srgb { Space::Srgb } else { Space::Linear },
             gloss: args.gloss,
-            single: args.single,
             from,
         },
     })
@@ -273,22 +272,22 @@ fn from(args: &Args, id: &str) -> Result<FromLobe, Failure> {
 }
 
 /// A container with its storages.
-fn format(args: &Args, id: &str) -> Result<Output, Failure> {
-    let Some(container) = CONTAINERS.into_iter().find(|c| *c == id) else {
-        let message = format!("--format {id}: maps are written as {}", CONTAINERS.join(", "));
-        return Err(Failure::usage(message));
+fn format(args: &Args, text: &str) -> Result<Output, Failure> {
+    let refused = |option: String| {
+        move |fault: Fault| {
+            let more = [fault.allowed(), fault.remedy()].into_iter().flatten();
+            Failure::usage(more.fold(format!("{option}: {fault}"), |text, more| format!("{text}; {more}")))
+        }
     };
-    let mut output = Output::new(container);
-    let pick = |option: &str, given: &Option<String>, usual: Storage| -> Result<Storage, Failure> {
-        let Some(id) = given else { return Ok(usual) };
-        let allowed = storages(container);
-        allowed.iter().copied().find(|s| s.id() == id).ok_or_else(|| {
-            let ids: Vec<&str> = allowed.iter().map(|s| s.id()).collect();
-            Failure::usage(format!("--{option} {id}: {container} stores maps as {}", ids.join(", ")))
-        })
-    };
-    output.roughness = pick("roughness-storage", &args.roughness_storage, output.roughness)?;
-    output.normal = pick("normal-storage", &args.normal_storage, output.normal)?;
+    let mut output = Output::parse(text).map_err(refused(format!("--format {text}")))?;
+    for (option, kind, given) in [
+        ("--roughness-storage", "roughness", &args.roughness_storage),
+        ("--normal-storage", "normal", &args.normal_storage),
+    ] {
+        if let Some(id) = given {
+            output = output.with(kind, id).map_err(refused(format!("{option} {id}")))?;
+        }
+    }
     Ok(output)
 }
 
@@ -318,12 +317,15 @@ fn summary(outcome: &MapOutcome) -> String {
         };
         told(level.at_limit, "at the limit alpha = 1");
         told(level.hopeless, "with D >= 0.5");
+        if let Some([_, eight]) = level.measured.as_ref().map(|m| &m.normals[..]) {
+            line.push_str(&format!("  normals of 8 bits: {:.4}", eight.mean));
+        }
         out.push_str(&line);
         out.push('\n');
     }
     let measured: Vec<_> = record.levels.iter().filter_map(|l| l.measured.as_ref()).collect();
     // every level has the same rules
-    for (i, rule) in measured.iter().take(1).flat_map(|m| &m.rules).map(|r| r.rule).enumerate() {
+    for (i, rule) in measured.iter().take(1).flat_map(|m| &m.rules).map(|r| &r.rule).enumerate() {
         let means: Vec<String> = measured.iter().map(|m| format!("{:.4}", m.rules[i].mean)).collect();
         out.push_str(&format!("rule {rule:<10} mean D of levels 1..: {}\n", means.join(" ")));
     }
@@ -351,7 +353,8 @@ impl From<MapError> for Failure {
                 return Failure::new(Exit::Interrupted, "interrupted; nothing was written");
             }
             MapError::Read { source: ReadError::Io { .. }, .. } => Exit::Io,
-            MapError::Nothing | MapError::Number { .. } => Exit::Usage,
+            MapError::Plan(e) => return map_options::refused(e),
+            MapError::Changed { .. } => Exit::Io,
             MapError::Encode { source, .. } => Exit::of_encode(source),
             _ => Exit::Input,
         };

@@ -18,6 +18,7 @@ pub mod laws;
 pub mod limits;
 pub mod list;
 pub mod map;
+mod map_options;
 pub mod output;
 pub mod plan;
 pub mod plot;

@@ -2,7 +2,7 @@
 
 use super::{Exit, Failure, engine, output, scene};
 use crate::pipeline::cost::{self, Cost};
-use crate::plan::PlannedTable;
+use crate::plan::{PlannedMap, PlannedTable};
 use bytesize::ByteSize;
 use serde_json::{Value as Json, json};
 use std::path::PathBuf;
@@ -40,12 +40,16 @@ pub fn run(args: &Args) -> Result<Exit, Failure> {
     if args.json {
         let mut all = scene::json(&job);
         let tables = job.plan.tables.iter().zip(&costs).map(|(t, c)| table(t, c));
+        if !job.plan.maps.is_empty() {
+            all["planned_maps"] = job.plan.maps.iter().map(map).collect();
+        }
         all["planned"] = Json::Array(tables.collect());
         all["dropped"] = json!(job.dropped);
         output::data(&all.to_string())?;
     } else {
         scene::tell(&job);
         let lines = job.plan.tables.iter().zip(&costs).map(|(t, c)| line(&job, t, c));
+        let lines = lines.chain(job.plan.maps.iter().map(map_line));
         let mut text = lines.collect::<Vec<_>>().join("\n");
         let (bytes, seconds) = costs.iter().fold((0, 0.0), |(b, s), c| (b + c.bytes, s + c.seconds));
         if costs.len() > 1 {
@@ -84,6 +88,16 @@ fn table(table: &PlannedTable, cost: &Cost) -> Json {
         "bytes": cost.bytes,
         "seconds": cost.seconds,
     })
+}
+
+fn map(map: &PlannedMap) -> Json {
+    json!({ "map": map.name(), "size": map.size, "levels": map.levels(), "files": map.files(), "asked": map.asked.canonical() })
+}
+
+fn map_line(map: &PlannedMap) -> String {
+    let kinds: Vec<&str> = map.asked.kinds().iter().map(|k| k.id()).collect();
+    let [w, h] = map.size;
+    format!("{}: map of {}; {w} x {h}, {} levels", map.name(), kinds.join(", "), map.levels())
 }
 
 fn line(job: &scene::Job, table: &PlannedTable, cost: &Cost) -> String {

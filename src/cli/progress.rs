@@ -74,7 +74,9 @@ pub struct Json {
 
 impl Progress for Json {
     fn event(&self, event: &Event<'_>) {
-        if matches!(event, Event::TableProgress { .. }) || self.fault.get().is_some() {
+        if matches!(event, Event::TableProgress { .. } | Event::MapProgress { .. })
+            || self.fault.get().is_some()
+        {
             return;
         }
         let line = serde_json::to_string(event).map_err(|e| Failure::new(Exit::Internal, e));
@@ -137,9 +139,10 @@ struct State {
 impl Bars {
     fn on(&self, event: &Event<'_>, state: &mut State) {
         match event {
-            Event::Plan { tables, .. } => {
-                let bar = self.all.add(ProgressBar::new(tables.len() as u64));
-                bar.set_style(style("total {bar:30} {pos}/{len} tables {elapsed}"));
+            Event::Plan { tables, maps, .. } => {
+                let bar = self.all.add(ProgressBar::new((tables.len() + maps.len()) as u64));
+                let what = if maps.is_empty() { "tables" } else { "tables and maps" };
+                bar.set_style(style(&format!("total {{bar:30}} {{pos}}/{{len}} {what} {{elapsed}}")));
                 state.total = Some(bar);
             }
             Event::TableStarted { table, texels, .. } => {
@@ -154,7 +157,19 @@ impl Bars {
                     bar.set_position(bar.position().max(*done as u64));
                 }
             }
-            Event::TableFinished { .. } => {
+            Event::MapStarted { map, .. } => {
+                let bar = self.all.insert(0, ProgressBar::new(0));
+                bar.set_style(style("{msg} {bar:30} {percent}% {pos}/{len} texels, {eta}"));
+                bar.set_message((*map).to_owned());
+                state.table = Some(bar);
+            }
+            Event::MapProgress { done, texels, .. } => {
+                if let Some(bar) = &state.table {
+                    bar.set_length(*texels as u64);
+                    bar.set_position(bar.position().max(*done as u64));
+                }
+            }
+            Event::TableFinished { .. } | Event::MapFinished { .. } => {
                 if let Some(bar) = state.table.take() {
                     bar.finish_and_clear();
                 }
@@ -190,11 +205,12 @@ fn style(template: &str) -> ProgressStyle {
 /// One line of text for an event, if it deserves one.
 fn line(event: &Event<'_>) -> Option<String> {
     Some(match event {
-        Event::Plan { recipe, tables } => {
+        Event::Plan { recipe, tables, maps } => {
             let texels: usize = tables.iter().map(|t| t.size.iter().product::<usize>()).sum();
             let open = tables.iter().filter(|t| t.size.contains(&0)).count();
             let more = if open > 0 { format!(", size of {open} to be found") } else { String::new() };
-            format!("recipe {recipe}: {} tables, {texels} texels{more}", tables.len())
+            let with = if maps.is_empty() { String::new() } else { format!(", {} maps", maps.len()) };
+            format!("recipe {recipe}: {} tables, {texels} texels{more}{with}", tables.len())
         }
         Event::Waiting { folder, seconds } => format!(
             "waiting for another run that writes into {}, at most {seconds} s (--lock-timeout)",
@@ -266,9 +282,18 @@ fn line(event: &Event<'_>) -> Option<String> {
             }
             text
         }
+        Event::MapFinished { map, levels, largest, hopeless, normals, shape, seconds, .. } => {
+            let hopeless =
+                if *hopeless > 0 { format!(", {hopeless} texels with D >= 0.5") } else { String::new() };
+            format!(
+                "  {map}: {levels} levels, {shape}, normals {normals}, largest D {largest:.4}{hopeless} [{:.0} ms]",
+                seconds * 1e3
+            )
+        }
         Event::Finding { table, finding } => format!("  warning: {table}: {finding}"),
-        Event::Summary { tables, written, unchanged, bytes, seconds } => format!(
-            "{tables} tables, {} kB: {written} files written, {unchanged} unchanged, {seconds:.2} s",
+        Event::Summary { tables, maps, written, unchanged, bytes, seconds } => format!(
+            "{tables} tables{}, {} kB: {written} files written, {unchanged} unchanged, {seconds:.2} s",
+            if *maps > 0 { format!(", {maps} maps") } else { String::new() },
             bytes.div_ceil(1000)
         ),
         _ => return None,

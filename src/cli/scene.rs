@@ -3,8 +3,9 @@
 use super::{Exit, Failure, output};
 use crate::math::figures::short;
 use crate::pipeline::pool;
-use crate::plan::scene::{self as planning, Asked, Kept, ScenePlanError, Survey, SurveyOptions};
-use crate::plan::{Plan, PlannedTable};
+use crate::plan::map::Kind;
+use crate::plan::scene::{self as planning, Asked, AskedMap, Kept, ScenePlanError, Survey, SurveyOptions};
+use crate::plan::{Plan, PlannedMap, PlannedTable};
 use crate::recipe::Engine;
 use crate::scene::{Fault, LeftOut, LeftOutKind, Need, Reader, SceneError};
 use std::path::{Path, PathBuf};
@@ -29,6 +30,10 @@ pub struct Look {
     /// Tables go so far beyond the roughness of the scenes, on either side; 0 if not given.
     #[arg(long, value_name = "ROUGHNESS", value_parser = margin)]
     margin: Option<f64>,
+    /// Filter the normal and roughness textures of materials into maps with all levels, as KTX2; tables then cover the roughness of
+    /// these levels. `normal`: fitted normals are written too; `anisotropy`: two widths and a direction.
+    #[arg(long, value_name = "KIND", value_delimiter = ',', num_args = 0.., require_equals = true, default_missing_value = "roughness", value_parser = kind)]
+    pub(super) maps: Vec<Kind>,
     /// Keep in this folder what was found in scenes, and read only those that changed since.
     #[arg(long, value_name = "DIR")]
     keep: Option<PathBuf>,
@@ -49,6 +54,7 @@ impl Look {
             ("--root", self.pictures.root.is_some()),
             ("--pixels", self.pictures.pixels.is_some()),
             ("--margin", self.margin.is_some()),
+            ("--maps", !self.maps.is_empty()),
             ("--keep", self.keep.is_some()),
         ];
         options.into_iter().find(|(_, given)| *given).map(|(name, _)| name)
@@ -60,12 +66,21 @@ fn margin(text: &str) -> Result<f64, String> {
     if (0.0..=1.0).contains(&number) { Ok(number) } else { Err("it must be from 0 to 1".to_owned()) }
 }
 
+fn kind(text: &str) -> Result<Kind, String> {
+    planning::KINDS
+        .into_iter()
+        .find(|k| k.id() == text)
+        .ok_or_else(|| format!("there is {}", planning::KINDS.map(Kind::id).join(", ")))
+}
+
 /// Scenes, what they need, and what is baked for them.
 #[derive(Debug)]
 pub(super) struct Job {
     pub(super) survey: Survey,
     /// The tables, one for one those of `plan` unless an engine has its own.
     pub(super) asked: Vec<Asked>,
+    /// The maps.
+    pub(super) maps: Vec<AskedMap>,
     pub(super) plan: Plan,
     /// Tables of the engine that the scenes do not need.
     pub(super) dropped: Vec<String>,
@@ -91,12 +106,13 @@ pub(super) fn job(
     let reader = Reader {
         at_least: roughness.map_or(0.0, |r| r.at_least),
         widens: roughness.is_some_and(|r| r.widens),
+        maps: !look.maps.is_empty(),
         margin: look.margin.unwrap_or(0.0),
     };
     let options = look.pictures.options(reader);
     let mut kept = look.keep.as_deref().map_or_else(Kept::default, |folder| Kept::read(folder, &options));
     let found = pool(jobs)?.install(|| planning::survey_with(files, &options, &mut kept));
-    let (survey, read) = found.map_err(|e| refused(&e))?;
+    let (mut survey, read) = found.map_err(|e| refused(&e))?;
     if let Some(folder) = &look.keep {
         kept.write(folder).map_err(|e| Failure::io(folder.display(), &e))?;
     }
@@ -108,9 +124,17 @@ pub(super) fn job(
             (Some(plan), dropped)
         }
     };
-    let plan = plan.unwrap_or_else(|| Plan::nothing(planning::NAME));
-    let reasons = planning::reasons(&survey, &asked);
-    Ok(Job { survey, asked, plan: plan.because(reasons), dropped, read })
+    let mut plan = plan.unwrap_or_else(|| Plan::nothing(planning::NAME));
+    let mut maps = Vec::new();
+    if !look.maps.is_empty() {
+        let found = planning::maps(files, &look.maps, &options).map_err(|e| refused(&e))?;
+        survey.needs.left_out.extend(found.left_out);
+        maps = found.maps;
+        let requests = maps.iter().map(|m| m.request.clone()).collect();
+        plan = plan.with_maps(requests).map_err(Failure::input)?;
+    }
+    let reasons = planning::reasons(&survey, &asked, &maps);
+    Ok(Job { survey, asked, maps, plan: plan.because(reasons), dropped, read })
 }
 
 /// The tables of an engine that serve what the scenes need.
@@ -192,6 +216,12 @@ pub(super) fn tell(job: &Job) {
     for need in &survey.needs.needs {
         tell_need(need, survey.scenes.len() > 1);
     }
+    for (asked, map) in job.maps.iter().zip(&job.plan.maps).take(LINES) {
+        tell_map(asked, map, survey.scenes.len() > 1);
+    }
+    if job.maps.len() > LINES {
+        output::talk(&format!("  and {} maps more; `plan --json` lists all", job.maps.len() - LINES));
+    }
     for note in job.asked.iter().flat_map(|a| a.notes.iter().map(move |n| (a, n))).take(LINES) {
         output::talk(&format!("  cut: {}: {}", note.0.request.name, note.1));
     }
@@ -201,8 +231,20 @@ pub(super) fn tell(job: &Job) {
     folded(survey.needs.left_out.iter().map(|left| format!("  left out: {}", shown(left))));
     let warnings = survey.scenes.iter().flat_map(|s| s.warnings.iter().map(move |w| (&s.file, w)));
     folded(warnings.map(|(file, w)| format!("  warning: {}: {w}", crate::math::shown::show(file))));
-    if job.plan.tables.is_empty() {
+    if job.plan.tables.is_empty() && job.plan.maps.is_empty() {
         output::talk("  nothing to bake");
+    }
+}
+
+/// A map, and who asks for it.
+fn tell_map(asked: &AskedMap, map: &PlannedMap, with_files: bool) {
+    let (n, [w, h]) = (asked.asked_by.len(), map.size);
+    let s = if n == 1 { "" } else { "s" };
+    output::talk(&format!("  needs map {}, {w} x {h} texels, asked {n} time{s}, such as", map.name()));
+    for asker in asked.asked_by.iter().take(4) {
+        let file = &asker.material.file;
+        let file = if with_files { format!("{} ", crate::math::shown::show(file)) } else { String::new() };
+        output::talk(&format!("    {file}{}: {}", asker.material, asker.why));
     }
 }
 

@@ -26,7 +26,8 @@ pub(super) struct SceneWrite {
     #[arg(long, value_enum, requires = "write", num_args = 0..=1, default_missing_value = "also")]
     extras: Option<Extras>,
     /// Convert specular-glossiness materials of the scene that is written, which then no longer names
-    /// KHR_materials_pbrSpecularGlossiness. What that costs is printed.
+    /// KHR_materials_pbrSpecularGlossiness; what that costs is printed. With `--maps` the base level of each map takes the place of the
+    /// core textures.
     #[arg(long, requires = "write")]
     replace: bool,
     /// How they are converted.
@@ -70,7 +71,8 @@ pub(super) fn check(args: &SceneWrite, look: &Look, scenes: &[PathBuf]) -> Resul
     let mut all: Vec<(Target, Request)> = Vec::new();
     for scene in scenes {
         let root = look.pictures.root.clone();
-        let request = Request { place, convert, root, ..Request::new(scene, to) };
+        let rewrite = args.replace && !look.maps.is_empty();
+        let request = Request { place, convert, root, rewrite, ..Request::new(scene, to) };
         let target = Target::of(&request)?;
         if all.iter().any(|(other, _)| *other == target) {
             let message =
@@ -85,6 +87,11 @@ pub(super) fn check(args: &SceneWrite, look: &Look, scenes: &[PathBuf]) -> Resul
 /// Notes which tables serve which material; an engine's own serve the families of their kind.
 pub(super) fn serve(requests: &mut [Request], job: &Job, engine: bool) {
     for (request, surveyed) in requests.iter_mut().zip(&job.survey.scenes) {
+        for map in &job.maps {
+            for asker in map.asked_by.iter().filter(|a| a.material.file == surveyed.file) {
+                request.uses.extend(asker.material.index.map(|i| (i, map.request.name.clone())));
+            }
+        }
         for need in &job.survey.needs.needs {
             let names: Vec<String> = if engine {
                 let serves =
@@ -121,6 +128,13 @@ pub(super) fn run(
 /// What was written, for people.
 pub(super) fn tell(done: &SceneOutcome) {
     tell_converted(&done.converted);
+    if !done.rewritten.is_empty() {
+        let all: Vec<String> = done.rewritten.iter().map(|i| format!("#{i}")).collect();
+        output::talk(&format!(
+            "  core textures are the base level of their maps now, with factors of 1: material {}; readers make their own, plain, levels of them",
+            all.join(", ")
+        ));
+    }
     for note in &done.notes {
         output::talk(&format!("  note: {note}"));
     }

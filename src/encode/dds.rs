@@ -104,6 +104,14 @@ impl Encoder for Dds {
         super::dds_read::read(bytes, cancel)
     }
 
+    fn mip_storages(&self) -> &'static [Storage] {
+        &super::mips::TEXTURES
+    }
+
+    fn encode_mips(&self, mips: &Mips<'_>) -> Result<Vec<Vec<u8>>, EncodeError> {
+        self::mips(mips, &mips.packed(mips.components())?).map(|bytes| vec![bytes])
+    }
+
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
         input.check(self)?;
         let shape = input.shape();
@@ -124,7 +132,7 @@ impl Encoder for Dds {
 }
 
 /// A pyramid of packed levels, the largest first, as the format has it.
-pub(super) fn mips(mips: &Mips<'_>, levels: &[Vec<u8>]) -> Result<Vec<u8>, EncodeError> {
+fn mips(mips: &Mips<'_>, levels: &[Vec<u8>]) -> Result<Vec<u8>, EncodeError> {
     let head = Head {
         storage: mips.storage,
         components: mips.components(),

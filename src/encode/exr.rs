@@ -88,6 +88,14 @@ impl Encoder for Exr {
         write(ImageAttributes::with_size(size), layers, first.cancel)
     }
 
+    fn mip_storages(&self) -> &'static [Storage] {
+        &[Storage::Half, Storage::Float]
+    }
+
+    fn encode_mips(&self, mips: &Mips<'_>) -> Result<Vec<Vec<u8>>, EncodeError> {
+        self::mips(mips).map(|bytes| vec![bytes])
+    }
+
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
         let layers = parts(input, None)?;
         let size = layers.first().map_or(Vec2(1, 1), |l| l.size);
@@ -132,12 +140,12 @@ fn parts(
 
 /// A pyramid: tiles of 64 x 64 pixels, levels rounded down.
 #[allow(clippy::cast_possible_truncation, reason = "the value has been rounded to a half")]
-pub(super) fn mips(mips: &Mips<'_>) -> Result<Vec<u8>, EncodeError> {
+fn mips(mips: &Mips<'_>) -> Result<Vec<u8>, EncodeError> {
     let n = mips.channels.len();
     let mut levels = Vec::new();
-    for level in mips.levels {
+    for k in 0..mips.levels.len() {
         mips.cancel.check()?;
-        levels.push(super::mips::stored(mips, level)?);
+        levels.push(super::mips::stored(mips, k)?);
     }
     let samples = |values: &[f32], c: usize| {
         let own = values.iter().skip(c).step_by(n);

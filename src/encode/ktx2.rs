@@ -118,6 +118,14 @@ impl Encoder for Ktx2 {
         together.write()
     }
 
+    fn mip_storages(&self) -> &'static [Storage] {
+        &super::mips::TEXTURES
+    }
+
+    fn encode_mips(&self, mips: &Mips<'_>) -> Result<Vec<Vec<u8>>, EncodeError> {
+        self::mips(mips, mips.packed(mips.components())?).map(|bytes| vec![bytes])
+    }
+
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
         Parts::new(input)?.write()
     }
@@ -243,7 +251,7 @@ impl<'a> Parts<'a> {
 }
 
 /// A pyramid of packed levels.
-pub(super) fn mips(mips: &Mips<'_>, levels: Vec<Vec<u8>>) -> Result<Vec<u8>, EncodeError> {
+fn mips(mips: &Mips<'_>, levels: Vec<Vec<u8>>) -> Result<Vec<u8>, EncodeError> {
     let parts = Parts {
         storage: mips.storage,
         components: mips.components(),

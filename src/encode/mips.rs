@@ -4,7 +4,7 @@
 //! processors sample three of 8 or 16 bits); a component without channel is 0, alpha is 1. Nothing is ever marked sRGB.
 
 use super::blocks::Kind;
-use super::{EncodeError, Storage, dds, exr, ktx2, png, texels};
+use super::{ENCODERS, EncodeError, Encoder, Storage, texels};
 use crate::cancel::Cancel;
 use crate::grid::Channel;
 use rayon::prelude::*;
@@ -29,61 +29,75 @@ pub struct Mips<'a> {
     pub storage: Storage,
     /// The provenance as JSON text.
     pub provenance_json: &'a str,
+    /// The bytes of each level, as [`blocks`] makes them, if the storage is made of blocks and they are known; empty otherwise.
+    pub blocks: &'a [Vec<u8>],
     /// Hash that leads to the entry of the manifest, for containers without metadata: 64 hexadecimal digits.
     pub identity: &'a str,
     /// Set from outside to stop.
     pub cancel: &'a Cancel,
 }
 
-/// Containers of pyramids.
-pub const CONTAINERS: [&str; 4] = ["ktx2", "dds", "exr", "png"];
+/// Containers of pyramids: those of [`ENCODERS`] that take them.
+pub fn containers() -> impl Iterator<Item = &'static dyn Encoder> + Clone {
+    ENCODERS.iter().copied().filter(|e| !e.mip_storages().is_empty())
+}
 
-/// Storages of pyramids that a container takes.
+/// Storages of pyramids in containers of textures.
+pub(super) static TEXTURES: [Storage; 6] =
+    [Storage::Unorm8, Storage::Unorm16, Storage::Half, Storage::Float, Storage::Bc4, Storage::Bc5];
+
+/// Most channels of a pyramid in a storage.
 #[must_use]
-pub fn storages(container: &str) -> &'static [Storage] {
-    match container {
-        "ktx2" | "dds" => {
-            &[Storage::Unorm8, Storage::Unorm16, Storage::Half, Storage::Float, Storage::Bc4, Storage::Bc5]
-        }
-        "exr" => &[Storage::Half, Storage::Float],
-        "png" => &[Storage::Unorm8, Storage::Unorm16],
-        _ => &[],
+pub fn most_channels(storage: Storage) -> usize {
+    match storage {
+        Storage::Bc4 => 1,
+        Storage::Bc5 => 2,
+        _ => 4,
     }
+}
+
+/// Checks what does not depend on the values: that the container takes the storage, and the storage so many channels.
+///
+/// # Errors
+/// [`EncodeError::Unknown`] and [`EncodeError::Channels`].
+pub fn check(encoder: &dyn Encoder, storage: Storage, count: usize) -> Result<(), EncodeError> {
+    if !encoder.mip_storages().contains(&storage) {
+        return Err(EncodeError::Unknown { id: format!("{}:{}", encoder.id(), storage.id()) });
+    }
+    let limit = most_channels(storage);
+    if count == 0 || count > limit {
+        return Err(EncodeError::Channels { format: encoder.id(), storage: storage.id(), count, limit });
+    }
+    Ok(())
 }
 
 /// The files of a pyramid in a container: what stands between the name and the end (`.ktx2`, `.mip0.png`), and the bytes.
 ///
 /// # Errors
-/// [`EncodeError`] for a container or storage that does not go with it, or a value that has no stored form.
-pub fn encode(container: &str, mips: &Mips<'_>) -> Result<Vec<(String, Vec<u8>)>, EncodeError> {
-    let id = || EncodeError::Unknown { id: format!("{container}:{}", mips.storage.id()) };
-    if !storages(container).contains(&mips.storage) {
-        return Err(id());
+/// As [`check`], or for a value that has no stored form.
+pub fn encode(encoder: &dyn Encoder, mips: &Mips<'_>) -> Result<Vec<(String, Vec<u8>)>, EncodeError> {
+    check(encoder, mips.storage, mips.channels.len())?;
+    let files = encoder.encode_mips(mips)?;
+    let ends = ends(encoder, mips.levels.len());
+    Ok(ends.into_iter().zip(files).collect())
+}
+
+/// What stands behind the name in the names of the files of a pyramid of so many levels.
+#[must_use]
+pub fn ends(encoder: &dyn Encoder, levels: usize) -> Vec<String> {
+    let extension = encoder.extension();
+    if encoder.holds_all_levels() {
+        return vec![format!(".{extension}")];
     }
-    let limit = match mips.storage {
-        Storage::Bc4 => 1,
-        Storage::Bc5 => 2,
-        _ => 4,
-    };
-    let (count, format) =
-        (mips.channels.len(), CONTAINERS.into_iter().find(|c| *c == container).unwrap_or("ktx2"));
-    if count == 0 || count > limit {
-        return Err(EncodeError::Channels { format, storage: mips.storage.id(), count, limit });
-    }
-    let whole = |bytes| vec![(format!(".{container}"), bytes)];
-    match container {
-        "ktx2" => ktx2::mips(mips, mips.packed(mips.components())?).map(whole),
-        "dds" => dds::mips(mips, &mips.packed(mips.components())?).map(whole),
-        "exr" => exr::mips(mips).map(whole),
-        _ => {
-            let components = if count == 2 { 3 } else { count };
-            let levels = mips.packed(components)?.into_iter().zip(mips.levels).enumerate();
-            let file = |(k, (bytes, level)): (usize, (Vec<u8>, &MipLevel))| {
-                Ok((format!(".mip{k}.png"), png::level(mips, level.size, components, bytes)?))
-            };
-            levels.map(file).collect()
-        }
-    }
+    (0..levels).map(|k| format!(".mip{k}.{extension}")).collect()
+}
+
+/// The bytes of every level in a storage of blocks; none in another.
+///
+/// # Errors
+/// [`EncodeError`] for a value that has no stored form.
+pub fn blocks(mips: &Mips<'_>) -> Result<Vec<Vec<u8>>, EncodeError> {
+    if mips.storage.is_block() { mips.packed(mips.components()) } else { Ok(Vec::new()) }
 }
 
 impl Mips<'_> {
@@ -102,7 +116,10 @@ impl Mips<'_> {
     }
 
     /// The bytes of every level.
-    fn packed(&self, components: usize) -> Result<Vec<Vec<u8>>, EncodeError> {
+    pub(super) fn packed(&self, components: usize) -> Result<Vec<Vec<u8>>, EncodeError> {
+        if self.storage.is_block() && self.blocks.len() == self.levels.len() {
+            return Ok(self.blocks.to_vec());
+        }
         self.levels.iter().map(|level| self.pack(level, components)).collect()
     }
 
@@ -164,16 +181,24 @@ impl Mips<'_> {
     }
 }
 
-/// A level as a reader will see it, `[texel][channel]`.
+/// A level as a reader will see it, `[texel][channel]`. A level that is not there has no values.
 ///
 /// # Errors
 /// As [`encode`].
 #[allow(clippy::cast_possible_truncation, reason = "stored numbers have at most 24 digits")]
-pub fn stored(mips: &Mips<'_>, level: &MipLevel) -> Result<Vec<f32>, EncodeError> {
+pub fn stored(mips: &Mips<'_>, k: usize) -> Result<Vec<f32>, EncodeError> {
     let n = mips.channels.len();
+    let Some(level) = mips.levels.get(k) else { return Ok(Vec::new()) };
     if mips.storage.is_block() {
-        let bytes = mips.pack(level, n)?;
-        let values = mips.storage.expand(&bytes, [level.size[0], level.size[1], 1], n, |c| mips.range(c));
+        let made;
+        let bytes = match mips.blocks.get(k) {
+            Some(bytes) => bytes,
+            None => {
+                made = mips.pack(level, n)?;
+                &made
+            }
+        };
+        let values = mips.storage.expand(bytes, [level.size[0], level.size[1], 1], n, |c| mips.range(c));
         return Ok(values.into_iter().map(|v| v as f32).collect());
     }
     let value = |(i, v): (usize, &f32)| {

@@ -174,6 +174,21 @@ pub trait Encoder: Debug + Send + Sync {
         let _ = cancel;
         Err(ReadError::Unknown(bytes.iter().copied().take(8).collect()))
     }
+    /// Storages of pyramids (maps with levels) that it takes; none if it holds no pyramids.
+    fn mip_storages(&self) -> &'static [Storage] {
+        &[]
+    }
+    /// True if all levels of a pyramid are in one file.
+    fn holds_all_levels(&self) -> bool {
+        true
+    }
+    /// The files of a pyramid: one, or one a level without [`Encoder::holds_all_levels`]. [`mips::encode`] checks it before.
+    ///
+    /// # Errors
+    /// [`EncodeError`] for a value that has no stored form, or a container without pyramids.
+    fn encode_mips(&self, mips: &mips::Mips<'_>) -> Result<Vec<Vec<u8>>, EncodeError> {
+        Err(EncodeError::Unknown { id: format!("{}:{}", self.id(), mips.storage.id()) })
+    }
     /// Makes the bytes of the file. The same input gives the same bytes.
     ///
     /// # Errors

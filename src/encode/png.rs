@@ -75,6 +75,21 @@ impl Encoder for Png {
         super::png_read::read(bytes, cancel)
     }
 
+    fn mip_storages(&self) -> &'static [Storage] {
+        &[Storage::Unorm8, Storage::Unorm16]
+    }
+
+    fn holds_all_levels(&self) -> bool {
+        false
+    }
+
+    fn encode_mips(&self, mips: &Mips<'_>) -> Result<Vec<Vec<u8>>, EncodeError> {
+        // no PNG has two channels that are both numbers
+        let components = if mips.channels.len() == 2 { 3 } else { mips.channels.len() };
+        let levels = mips.packed(components)?.into_iter().zip(mips.levels);
+        levels.map(|(bytes, level)| self::level(mips, level.size, components, bytes)).collect()
+    }
+
     fn encode(&self, input: &EncodeInput<'_>) -> Result<Vec<u8>, EncodeError> {
         input.check(self)?;
         let components = self.components(&input.shape());
@@ -94,7 +109,7 @@ impl Encoder for Png {
 }
 
 /// One level of a pyramid, packed.
-pub(super) fn level(
+fn level(
     mips: &Mips<'_>,
     size: [usize; 2],
     components: usize,

@@ -13,7 +13,7 @@ mod write;
 pub use levels::{Levels, levels};
 pub use pyramid::{Coverage, count_levels, halved, shrink};
 pub(crate) use read::Samples;
-pub use read::{MAGIC, read_bytes, read_within};
+pub use read::{MAGIC, facts, read_bytes, read_within};
 pub use resample::Wrap;
 pub use write::write_png;
 

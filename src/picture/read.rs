@@ -40,6 +40,45 @@ pub fn read_within(bytes: &[u8], limit: u64) -> Result<Picture, PictureError> {
     decode(bytes, named(bytes), allow, planes)
 }
 
+/// Width and height of a PNG or JPEG image, and the names of its channels, from what stands before its pixels.
+///
+/// # Errors
+/// [`PictureError::Unknown`] for another format, [`PictureError::Damaged`].
+pub fn facts(bytes: &[u8]) -> Result<([usize; 2], Vec<String>), PictureError> {
+    let Some(format) = named(bytes) else {
+        return Err(PictureError::Unknown(bytes.iter().copied().take(8).collect()));
+    };
+    let of = |decoder: &dyn ImageDecoder| {
+        let (width, height) = decoder.dimensions();
+        let names = names(usize::from(decoder.color_type().channel_count()));
+        ([width as usize, height as usize], names.iter().map(|n| (*n).to_owned()).collect())
+    };
+    let damaged = |fault: String| PictureError::Damaged { format, fault };
+    // as in `decode`
+    let all = std::panic::AssertUnwindSafe(|| {
+        let file = Cursor::new(bytes);
+        match format {
+            "png" => PngDecoder::new(file).map(|d| of(&d)),
+            _ => JpegDecoder::new(file).map(|d| of(&d)),
+        }
+    });
+    let found = std::panic::catch_unwind(all);
+    found.map_or_else(
+        |_| Err(damaged("the decoder gave up".to_owned())),
+        |r| r.map_err(|e| damaged(e.to_string())),
+    )
+}
+
+/// Names of so many channels.
+const fn names(channels: usize) -> &'static [&'static str] {
+    match channels {
+        1 => &["Y"],
+        2 => &["Y", "A"],
+        3 => &["R", "G", "B"],
+        _ => &["R", "G", "B", "A"],
+    }
+}
+
 fn planes(header: &Header, samples: &Samples) -> Picture {
     let one = if samples.are_wide() { 65535.0 } else { 255.0 };
     let plane = |(c, name): (usize, &&str)| Plane {
@@ -141,12 +180,7 @@ impl Samples {
 
     /// Names of the channels.
     pub(crate) const fn names(&self) -> &'static [&'static str] {
-        match self.channels {
-            1 => &["Y"],
-            2 => &["Y", "A"],
-            3 => &["R", "G", "B"],
-            _ => &["R", "G", "B", "A"],
-        }
+        names(self.channels)
     }
 
     /// Are the codes of 16 bits?

@@ -166,6 +166,8 @@ struct Listed {
     #[serde(default)]
     tool: String,
     tables: Vec<ListedTable>,
+    #[serde(default)]
+    maps: Vec<ListedTable>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -234,7 +236,8 @@ fn compare(folder: &Path, text: &[u8]) -> Result<Audit, AuditError> {
     // a file that several tables share is listed by each of them
     let mut seen: BTreeMap<&str, (&ListedFile, Vec<&str>)> = BTreeMap::new();
     let mut order = Vec::new();
-    for (table, file) in listed.tables.iter().flat_map(|t| t.files.iter().map(move |f| (t, f))) {
+    let units = listed.tables.iter().chain(&listed.maps);
+    for (table, file) in units.flat_map(|t| t.files.iter().map(move |f| (t, f))) {
         if !is_plain(&file.file) {
             return Err(fault(format!("`{}` is not the name of a file in its folder", file.file)));
         }

@@ -3,7 +3,7 @@
 use super::{Outcome, Recovery};
 use crate::grid::provenance::{ChoiceRecord, LawRecord, SizeRecord};
 use crate::grid::table::Extreme;
-use crate::plan::{Plan, PlannedTable};
+use crate::plan::{Plan, PlannedMap, PlannedTable};
 use crate::verify::Finding;
 use serde::Serialize;
 use std::path::Path;
@@ -33,6 +33,9 @@ pub enum Event<'a> {
         recipe: &'a str,
         /// Tables in order.
         tables: Vec<PlanEntry<'a>>,
+        /// Maps in order.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        maps: Vec<MapPlanEntry<'a>>,
     },
     /// Another run holds the output folder.
     Waiting {
@@ -112,6 +115,46 @@ pub enum Event<'a> {
         /// Seconds spent on laws, rounding and the comparison between texels.
         check_seconds: f64,
     },
+    /// Work on a map starts.
+    MapStarted {
+        /// Map name.
+        map: &'a str,
+        /// Its number in the plan.
+        index: usize,
+        /// Width and height of its first level.
+        size: [usize; 2],
+    },
+    /// Texels of a map are done. Not part of the JSON stream.
+    #[serde(skip)]
+    MapProgress {
+        /// Map name.
+        map: &'a str,
+        /// Its number in the plan.
+        index: usize,
+        /// Texels done.
+        done: usize,
+        /// Texels of all levels.
+        texels: usize,
+    },
+    /// A map is filtered, measured and encoded (not yet written).
+    MapFinished {
+        /// Map name.
+        map: &'a str,
+        /// Its number in the plan.
+        index: usize,
+        /// Levels.
+        levels: usize,
+        /// Largest D of a texel.
+        largest: f64,
+        /// Texels with D of 0.5 and more.
+        hopeless: usize,
+        /// `mean` or `fit`.
+        normals: &'a str,
+        /// `isotropic` or `anisotropic`.
+        shape: &'a str,
+        /// Seconds spent.
+        seconds: f64,
+    },
     /// A finding that does not stop the run: a waived law, one that could not be checked, a missed tolerance.
     Finding {
         /// Table name.
@@ -124,6 +167,8 @@ pub enum Event<'a> {
     Summary {
         /// Number of tables.
         tables: usize,
+        /// Number of maps.
+        maps: usize,
         /// Files that are new or changed.
         written: usize,
         /// Files that had the same bytes already.
@@ -154,6 +199,19 @@ pub struct PlanEntry<'a> {
     pub hash: &'a str,
     /// Most bytes of memory that it takes.
     pub memory: u64,
+}
+
+/// A map of the plan.
+#[derive(Debug, Clone, Serialize)]
+pub struct MapPlanEntry<'a> {
+    /// Map name.
+    pub name: &'a str,
+    /// Width and height of its first level.
+    pub size: [usize; 2],
+    /// Files that will be written.
+    pub files: Vec<String>,
+    /// Hash of what was asked and of its images.
+    pub hash: &'a str,
 }
 
 /// The largest of something, borrowed.
@@ -244,16 +302,25 @@ impl<'a> Event<'a> {
                 memory: super::memory::table(t),
             })
             .collect();
-        Event::Plan { recipe: &plan.name, tables }
+        let map = |m: &'a PlannedMap| MapPlanEntry {
+            name: m.name(),
+            size: m.size,
+            files: m.files(),
+            hash: &m.identity,
+        };
+        Event::Plan { recipe: &plan.name, tables, maps: plan.maps.iter().map(map).collect() }
     }
 
     pub(super) fn summary(outcome: &Outcome, seconds: f64) -> Event<'static> {
-        let files = outcome.manifest.tables.iter().flat_map(|t| &t.files);
+        let manifest = &outcome.manifest;
+        let tables = manifest.tables.iter().flat_map(|t| &t.files).map(|f| f.bytes);
+        let maps = manifest.maps.iter().flat_map(|m| &m.files).map(|f| f.bytes);
         Event::Summary {
-            tables: outcome.manifest.tables.len(),
+            tables: manifest.tables.len(),
+            maps: manifest.maps.len(),
             written: outcome.written,
             unchanged: outcome.unchanged,
-            bytes: files.map(|f| f.bytes).sum(),
+            bytes: tables.chain(maps).sum(),
             seconds,
         }
     }

@@ -1,5 +1,6 @@
 //! `manifest.json`: what a run wrote, table by table, with the facts that the files carry themselves.
 
+use super::map::MapEntry;
 use crate::grid::Provenance;
 use crate::grid::provenance::{Encoding, Reconstruction, SCHEMA, TexelRecord};
 use crate::plan::Plan;
@@ -19,6 +20,9 @@ pub struct Manifest {
     pub hash: String,
     /// Tables in the order of the recipe.
     pub tables: Vec<TableRecord>,
+    /// Maps in the order of the recipe.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub maps: Vec<MapEntry>,
     /// Why they were asked for, where scenes asked: files, materials, reasons, and what was left out.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub scenes: Option<serde_json::Value>,
@@ -64,10 +68,16 @@ pub struct FileRecord {
 }
 
 impl Manifest {
-    pub(super) fn new(plan: &Plan, tables: Vec<TableRecord>, stale: Vec<String>) -> Manifest {
+    pub(super) fn new(
+        plan: &Plan,
+        tables: Vec<TableRecord>,
+        maps: Vec<MapEntry>,
+        stale: Vec<String>,
+    ) -> Manifest {
         let mut hasher = blake3::Hasher::new();
-        for table in &plan.tables {
-            hasher.update(table.identity.as_bytes());
+        let units = plan.tables.iter().map(|t| &t.identity).chain(plan.maps.iter().map(|m| &m.identity));
+        for identity in units {
+            hasher.update(identity.as_bytes());
         }
         Manifest {
             schema: SCHEMA,
@@ -75,6 +85,7 @@ impl Manifest {
             recipe: plan.name.clone(),
             hash: hasher.finalize().to_hex().to_string(),
             tables,
+            maps,
             scenes: plan.reasons.clone(),
             stale,
         }
@@ -83,10 +94,10 @@ impl Manifest {
     /// Files of the manifest that lies in a folder, and those that it calls stale, which are still there and are not among `names`.
     pub(super) fn stale(folder: &Path, names: &[String]) -> Vec<String> {
         let old = std::fs::read(folder.join(super::MANIFEST)).ok();
-        let Some(old) = old.and_then(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok()) else {
+        let Some(old) = old.and_then(|bytes| serde_json::from_slice::<Listed>(&bytes).ok()) else {
             return Vec::new();
         };
-        let listed = old.tables.into_iter().flat_map(|t| t.files).map(|f| f.file);
+        let listed = old.tables.into_iter().chain(old.maps).flat_map(|t| t.files).map(|f| f.file);
         let is_left = |name: &String| {
             super::transaction::is_plain(name) && !names.contains(name) && folder.join(name).is_file()
         };
@@ -113,6 +124,27 @@ impl Manifest {
         bytes.push(b'\n');
         bytes
     }
+}
+
+/// What of a manifest of any version tells which files are its own.
+#[derive(Deserialize)]
+struct Listed {
+    #[serde(default)]
+    tables: Vec<ListedUnit>,
+    #[serde(default)]
+    maps: Vec<ListedUnit>,
+    #[serde(default)]
+    stale: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct ListedUnit {
+    files: Vec<ListedFile>,
+}
+
+#[derive(Deserialize)]
+struct ListedFile {
+    file: String,
 }
 
 /// Program and version, as files name it.

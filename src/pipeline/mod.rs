@@ -1,4 +1,4 @@
-//! Plan -> bake -> verify -> encode -> write. Nothing is replaced unless every table of the plan is baked and verified; what that
+//! Plan -> bake -> verify -> encode -> write. Nothing is replaced unless every table of the plan is baked and verified, and every map made; what that
 //! promises of an output folder is told in [`transaction`].
 //!
 //! The pipeline never prints: it sends [`Event`]s to a [`Progress`].
@@ -26,7 +26,7 @@ pub mod transaction;
 pub mod write_scene;
 
 pub use crate::plan::MANIFEST;
-pub use event::{Event, Extremum, Progress, Silent};
+pub use event::{Event, Extremum, MapPlanEntry, PlanEntry, Progress, Silent};
 pub use in_memory::{Baked, InMemoryError, bake, bake_until};
 pub use manifest::{FileRecord, Manifest, TableRecord};
 pub use threads::{MOST_THREADS, pool};
@@ -116,6 +116,15 @@ pub enum PipelineError {
         table: String,
         /// Why.
         message: String,
+    },
+    /// A map cannot be made.
+    #[error("map {map}: {error}")]
+    Map {
+        /// Map name.
+        map: String,
+        /// Why.
+        #[source]
+        error: Box<map::MapError>,
     },
     /// Laws that do not hold and are not waived.
     #[error("{} broken; nothing was written", laws(.0.len()))]
@@ -260,13 +269,29 @@ pub fn run(
     if !doubts.is_empty() {
         return Err(PipelineError::Doubt(doubts));
     }
+    let mut maps = Vec::new();
+    for (index, planned) in plan.maps.iter().enumerate() {
+        let made = pool.install(|| map::make(&plan.name, planned, index, cancel, progress));
+        let made = made.map_err(|error| of_map(planned.name(), error))?;
+        for (name, bytes) in &made.files {
+            files.stage(name, bytes)?;
+        }
+        maps.push(made.entry);
+    }
     let stale = Manifest::stale(&settings.out, &plan.files());
-    let mut manifest = Manifest::new(plan, tables, stale);
+    let mut manifest = Manifest::new(plan, tables, maps, stale);
     manifest.set_sizes(|name| files.staged(name));
     let written = files.commit(&manifest.to_bytes())?;
     let outcome = Outcome { manifest, written: written.written, unchanged: written.unchanged };
     progress.event(&Event::summary(&outcome, start.elapsed().as_secs_f64()));
     Ok(outcome)
+}
+
+fn of_map(map: &str, error: map::MapError) -> PipelineError {
+    match error {
+        map::MapError::Run(e) => e,
+        error => PipelineError::Map { map: map.to_owned(), error: Box::new(error) },
+    }
 }
 
 /// What would stop a run before it begins, without a trace: conflicts of file names, and more memory than there is.

@@ -214,6 +214,26 @@ pub enum Fault {
         /// What was found, and where.
         what: String,
     },
+    /// A map that cannot be made as it was asked for.
+    #[error("{why}")]
+    Map {
+        /// Why not.
+        why: String,
+        /// What is allowed.
+        allowed: Option<String>,
+        /// What to do about it.
+        remedy: Option<&'static str>,
+    },
+    /// An image that cannot be read.
+    #[error("{}: {why}", show(file))]
+    Image {
+        /// The file.
+        file: String,
+        /// Why not.
+        why: String,
+        /// Is it the system that cannot?
+        io: bool,
+    },
     /// The table cannot be bound.
     #[error("{}", bind_message(.0))]
     Bind(BindError),
@@ -241,6 +261,7 @@ impl Fault {
                 Some(format!("{owner} takes {axis} from {} to {}{map}", number(*min), number(*max)))
             }
             Fault::SplitFresnel { .. } => Some("allowed: 1".to_owned()),
+            Fault::Map { allowed, .. } => allowed.clone(),
             Fault::Unclaimed { model, kind, .. } => {
                 Some(format!("table {kind} checks what {model} does not claim (`brdfbake describe {model}`)"))
             }
@@ -287,6 +308,9 @@ impl Fault {
                 ));
             }
             Fault::NoValue { .. } => "move the axis off that end, or take another model",
+            Fault::Map { remedy, .. } => (*remedy)?,
+            Fault::Image { io: true, .. } => "paths are relative to the folder of the recipe",
+            Fault::Image { io: false, .. } => "take a PNG, JPEG, EXR, KTX2, DDS or HDR image",
             Fault::Bind(e) => bind_remedy(e)?,
             _ => return None,
         };

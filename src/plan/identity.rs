@@ -10,6 +10,7 @@
 //!
 //! Paths, hosts, clocks, threads and the names of inputs are in no file, so they are not in it.
 
+use super::map::PlannedMap;
 use super::table::PlannedTable;
 use serde_json::Value as Json;
 
@@ -85,7 +86,8 @@ pub(super) fn of_table(plan: &str, table: &PlannedTable) -> String {
 }
 
 /// The hash of a plan.
-pub(super) fn of_plan(name: &str, tables: &[PlannedTable]) -> String {
+pub(super) fn of_plan(name: &str, tables: &[PlannedTable], maps: &[PlannedMap]) -> String {
     let hasher = Hasher::new("plan").part(name.as_bytes());
-    tables.iter().fold(hasher, |h, t| h.part(t.identity.as_bytes())).finish()
+    let units = tables.iter().map(|t| &t.identity).chain(maps.iter().map(|m| &m.identity));
+    units.fold(hasher, |h, identity| h.part(identity.as_bytes())).finish()
 }

@@ -14,7 +14,7 @@
 //! into the request (`table[2].axis[1].domain`). No file is known here: whoever made the request finds the place in it.
 //!
 //! # Another sort of unit
-//! What is no table (a map, a filtered picture) gets files of its own beside `request.rs` and `table.rs`, a list in [`Plan`] beside
+//! What is no table (a [`map`]) gets files of its own beside `request.rs` and `table.rs`, a list in [`Plan`] beside
 //! `tables`, and an identity that begins with [`identity::Hasher::new`] of its own word. Its files go through [`Plan::files`].
 //!
 //! # A planned table
@@ -26,6 +26,7 @@ pub(crate) mod canonical;
 pub(crate) mod fault;
 pub(crate) mod faults;
 pub mod identity;
+pub mod map;
 mod name;
 mod output;
 mod place;
@@ -39,6 +40,7 @@ mod table;
 
 pub use fault::Fault;
 pub use identity::Input;
+pub use map::{MapRequest, PlannedMap};
 pub use name::MANIFEST;
 pub use output::Output;
 pub use place::{Part, Path, Place, Step};

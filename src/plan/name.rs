@@ -2,6 +2,7 @@
 
 use super::fault::Fault;
 use super::faults::Faults;
+use super::map::MapDraft;
 use super::output::{self, Output};
 use super::place::Path;
 use super::request::{Draft, TableRequest};
@@ -63,6 +64,26 @@ pub(super) fn check(draft: &Draft, path: &Path, taken: &mut HashSet<String>, fau
     if let Some(stem) = stems.iter().find(|stem| taken.contains(*stem)) {
         let why = "file names must differ by more than case".to_owned();
         faults.value(path.key("name"), Fault::Twice { what: "table name", got: stem.clone(), why });
+    }
+    taken.extend(stems);
+}
+
+/// Checks the name of a map, which is `taken` by it with the names of its files.
+pub(super) fn check_map(draft: &MapDraft, path: &Path, taken: &mut HashSet<String>, faults: &mut Faults) {
+    if draft.no_name {
+        return;
+    }
+    let name = &draft.request.name;
+    if let Some(fault) = portable("map name", name) {
+        faults.value(path.key("name"), fault);
+        return;
+    }
+    let kinds = draft.request.kinds();
+    let stems = kinds.iter().map(|k| format!("{name}.{}", k.id()).to_ascii_lowercase());
+    let stems: Vec<String> = std::iter::once(name.to_ascii_lowercase()).chain(stems).collect();
+    if let Some(stem) = stems.iter().find(|stem| taken.contains(*stem)) {
+        let why = "names of maps and tables must differ by more than case".to_owned();
+        faults.value(path.key("name"), Fault::Twice { what: "name", got: stem.clone(), why });
     }
     taken.extend(stems);
 }

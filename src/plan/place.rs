@@ -30,6 +30,12 @@ impl Path {
         Path::root().key("table").index(i)
     }
 
+    /// Map number `i`.
+    #[must_use]
+    pub fn map(i: usize) -> Path {
+        Path::root().key("map").index(i)
+    }
+
     /// The value of a key in it.
     #[must_use]
     pub fn key(&self, key: &str) -> Path {

@@ -2,6 +2,7 @@
 
 use super::fault::Fault;
 use super::faults::Faults;
+use super::map::{self, MapDraft, MapRequest, PlannedMap};
 use super::place::{Path, Place};
 use super::request::{Draft, TableRequest};
 use super::table::{self, PlannedTable};
@@ -9,14 +10,16 @@ use super::{MANIFEST, MAX_TABLES, identity, name};
 use serde_json::{Value as Json, json};
 use std::collections::HashSet;
 
-/// What to bake, checked: every name is known, every number in its range, every table bound.
+/// What to bake, checked: every name is known, every number in its range, every table bound, every image found.
 #[derive(Debug)]
 pub struct Plan {
     /// Its name: that of the recipe.
     pub name: String,
     /// The tables, in the order in which they were asked for.
     pub tables: Vec<PlannedTable>,
-    /// Hash over its name and the identities of its tables, in hex.
+    /// The maps, in the order in which they were asked for.
+    pub maps: Vec<PlannedMap>,
+    /// Hash over its name and the identities of its tables and maps, in hex.
     pub hash: String,
     /// Why its tables were asked for, as the manifest tells it: what scenes need. Nothing of it is in a file of a table.
     pub reasons: Option<Json>,
@@ -49,10 +52,19 @@ impl Plan {
     /// # Errors
     /// [`PlanError`] with every fault.
     pub fn from_requests(name: &str, tables: Vec<TableRequest>) -> Result<Plan, PlanError> {
+        Plan::from_all(name, tables, Vec::new())
+    }
+
+    /// As [`Plan::from_requests`], with maps.
+    ///
+    /// # Errors
+    /// [`PlanError`] with every fault.
+    pub fn from_all(name: &str, tables: Vec<TableRequest>, maps: Vec<MapRequest>) -> Result<Plan, PlanError> {
         let mut faults = Faults::default();
-        check_count(tables.len(), &mut faults);
-        let drafts = tables.into_iter().take(MAX_TABLES).map(Draft::from).collect();
-        match resolve(Some(name), None, drafts, &mut faults) {
+        check_count([tables.len(), maps.len()], &mut faults);
+        let tables = tables.into_iter().take(MAX_TABLES).map(Draft::from).collect();
+        let maps = maps.into_iter().take(MAX_TABLES).map(MapDraft::from).collect();
+        match resolve(Some(name), None, tables, maps, &mut faults) {
             Some(plan) if faults.is_empty() => Ok(plan),
             _ => Err(PlanError { faults: faults.list }),
         }
@@ -61,7 +73,7 @@ impl Plan {
     /// A plan of no table: who asks needs none, and the manifest says so.
     #[must_use]
     pub fn nothing(name: &str) -> Plan {
-        Plan::new(name, Vec::new())
+        Plan::new(name, Vec::new(), Vec::new())
     }
 
     /// The plan with the reasons of its tables.
@@ -78,15 +90,40 @@ impl Plan {
         self
     }
 
+    /// The plan with further maps.
+    ///
+    /// # Errors
+    /// [`PlanError`] with every fault of the maps.
+    pub fn with_maps(mut self, maps: Vec<MapRequest>) -> Result<Plan, PlanError> {
+        let mut faults = Faults::default();
+        check_count([1, self.maps.len() + maps.len()], &mut faults);
+        let mut taken: HashSet<String> = self.tables.iter().map(|t| t.name().to_ascii_lowercase()).collect();
+        taken.extend(self.maps.iter().map(|m| m.name().to_ascii_lowercase()));
+        for (i, draft) in maps.into_iter().map(MapDraft::from).enumerate() {
+            let path = Path::map(i);
+            name::check_map(&draft, &path, &mut taken, &mut faults);
+            self.maps.extend(map::resolve(draft, &path, &mut faults).map(|m| m.identified(&self.name)));
+        }
+        self.hash = identity::of_plan(&self.name, &self.tables, &self.maps);
+        if faults.is_empty() { Ok(self) } else { Err(PlanError { faults: faults.list }) }
+    }
+
     /// One plan with the tables of several, in order.
     ///
     /// # Errors
     /// [`PlanError`] if there are no tables, too many, or two of the same name.
     pub fn join(name: &str, plans: Vec<Plan>) -> Result<Plan, PlanError> {
-        let tables: Vec<PlannedTable> = plans.into_iter().flat_map(|p| p.tables).collect();
+        let (mut tables, mut maps) = (Vec::new(), Vec::new());
+        for plan in plans {
+            tables.extend(plan.tables);
+            maps.extend(plan.maps);
+        }
         let mut faults = Faults::default();
-        check_count(tables.len(), &mut faults);
+        check_count([tables.len(), maps.len()], &mut faults);
         let mut taken = HashSet::new();
+        for (i, map) in maps.iter().enumerate() {
+            name::check_map(&MapDraft::from(map.asked.clone()), &Path::map(i), &mut taken, &mut faults);
+        }
         for (i, table) in tables.iter().enumerate() {
             if !taken.insert(table.name().to_ascii_lowercase()) {
                 let (got, why) = (table.name().to_owned(), "two plans have it".to_owned());
@@ -94,20 +131,35 @@ impl Plan {
                 faults.value(Path::table(i).key("name"), fault);
             }
         }
-        if faults.is_empty() { Ok(Plan::new(name, tables)) } else { Err(PlanError { faults: faults.list }) }
+        if faults.is_empty() {
+            Ok(Plan::new(name, tables, maps))
+        } else {
+            Err(PlanError { faults: faults.list })
+        }
     }
 
-    /// A plan of tables that are resolved and go together; they get their identities as parts of it.
-    fn new(name: &str, tables: Vec<PlannedTable>) -> Plan {
+    /// A plan of what is resolved and goes together; tables and maps get their identities as parts of it.
+    fn new(name: &str, tables: Vec<PlannedTable>, maps: Vec<PlannedMap>) -> Plan {
         let tables: Vec<PlannedTable> = tables.into_iter().map(|t| t.identified(name)).collect();
-        let hash = identity::of_plan(name, &tables);
-        Plan { name: name.to_owned(), tables, hash, reasons: None }
+        let maps: Vec<PlannedMap> = maps.into_iter().map(|m| m.identified(name)).collect();
+        let hash = identity::of_plan(name, &tables, &maps);
+        Plan { name: name.to_owned(), tables, maps, hash, reasons: None }
     }
 
     /// Name and tables under the keys of a recipe, with all defaults filled in; the same for requests that mean the same.
     #[must_use]
     pub fn canonical(&self) -> Json {
-        json!({ "name": self.name, "table": self.tables.iter().map(PlannedTable::canonical).collect::<Vec<_>>() })
+        let tables: Vec<Json> = self.tables.iter().map(PlannedTable::canonical).collect();
+        let mut all = json!({ "name": self.name, "table": tables });
+        if !self.maps.is_empty() {
+            let map = |m: &PlannedMap| {
+                let mut keys = m.asked.canonical();
+                keys["name"] = m.name().into();
+                keys
+            };
+            all["map"] = self.maps.iter().map(map).collect();
+        }
+        all
     }
 
     /// What was asked for, table by table, with all defaults filled in. As requests, or as the text of a recipe, they make the same
@@ -127,16 +179,21 @@ impl Plan {
             let own: Vec<String> = table.files().into_iter().filter(|name| !shared(name)).collect();
             names.extend(own);
         }
+        names.extend(self.maps.iter().flat_map(PlannedMap::files));
         names.push(MANIFEST.to_owned());
         names
     }
 }
 
-/// A plan has tables, and not too many.
-pub(crate) fn check_count(count: usize, faults: &mut Faults) {
-    if count == 0 || count > MAX_TABLES {
-        let allowed = format!("1 to {MAX_TABLES}");
-        faults.key(Path::root().key("table"), Fault::Count { key: "table", got: count, allowed });
+/// A plan has tables or maps, and not too many of either.
+pub(crate) fn check_count([tables, maps]: [usize; 2], faults: &mut Faults) {
+    let allowed = format!("1 to {MAX_TABLES}");
+    if (tables == 0 && maps == 0) || tables > MAX_TABLES {
+        let allowed = allowed.clone();
+        faults.key(Path::root().key("table"), Fault::Count { key: "table", got: tables, allowed });
+    }
+    if maps > MAX_TABLES {
+        faults.key(Path::root().key("map"), Fault::Count { key: "map", got: maps, allowed });
     }
 }
 
@@ -145,6 +202,7 @@ pub(crate) fn resolve(
     name: Option<&str>,
     tolerance: Option<f64>,
     drafts: Vec<Draft>,
+    maps: Vec<MapDraft>,
     faults: &mut Faults,
 ) -> Option<Plan> {
     if let Some(fault) = name.and_then(name::recipe) {
@@ -159,6 +217,13 @@ pub(crate) fn resolve(
         name::check(&draft, &path, &mut taken, faults);
         tables.push(table::resolve(draft, &path, tolerance, faults));
     }
+    let mut planned = Vec::new();
+    for (i, draft) in maps.into_iter().enumerate() {
+        let path = Path::map(i);
+        name::check_map(&draft, &path, &mut taken, faults);
+        planned.push(map::resolve(draft, &path, faults));
+    }
     let tables: Vec<PlannedTable> = tables.into_iter().collect::<Option<_>>()?;
-    Some(Plan::new(name?, tables))
+    let planned: Vec<PlannedMap> = planned.into_iter().collect::<Option<_>>()?;
+    Some(Plan::new(name?, tables, planned))
 }

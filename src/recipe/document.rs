@@ -4,22 +4,24 @@
 //! [`Origins`] leads from a place in the requests back to the one in the file.
 
 use super::section::{Section, wrong};
-use super::{read_axis, read_size};
+use super::{read_axis, read_map, read_size};
 use crate::grid::Axis;
 use crate::grid::fit::Texels;
 use crate::grid::provenance::Waiver;
 use crate::math::shown::show;
 use crate::plan::fault::{Fault, unknown_word};
 use crate::plan::faults::Faults;
+use crate::plan::map::MapDraft;
 use crate::plan::request::{Draft, Holes};
 use crate::plan::resolve::check_count;
 use crate::plan::{MAX_TABLES, Output, Part, Path, Place, Sizing, Step, TableRequest};
 use crate::tables::driver::OnMiss;
 use crate::tables::spec::Request;
 use serde_json::{Map, Value as Json};
+use std::path::Path as File;
 use toml::de::DeTable;
 
-const ROOT: &[&str] = &["name", "tolerance", "engine", "table"];
+const ROOT: &[&str] = &["name", "tolerance", "engine", "table", "map"];
 const TABLE: &[&str] = &[
     "kind",
     "name",
@@ -46,12 +48,16 @@ pub(super) struct Document {
     pub(super) name: Option<String>,
     pub(super) tolerance: Option<f64>,
     pub(super) drafts: Vec<Draft>,
+    pub(super) maps: Vec<MapDraft>,
     pub(super) origins: Origins,
 }
 
 /// Where the requests come from, one each.
 #[derive(Debug, Default)]
-pub(super) struct Origins(Vec<Origin>);
+pub(super) struct Origins {
+    tables: Vec<Origin>,
+    maps: Vec<Path>,
+}
 
 #[derive(Debug)]
 enum Origin {
@@ -68,8 +74,12 @@ enum Origin {
 impl Origins {
     /// The place in the file of a place in the requests.
     pub(super) fn locate(&self, place: Place) -> Place {
-        let [Step::Key(key), Step::Index(table), rest @ ..] = place.path.steps() else { return place };
-        let Some(origin) = self.0.get(*table).filter(|_| key == "table") else { return place };
+        let [Step::Key(key), Step::Index(unit), rest @ ..] = place.path.steps() else { return place };
+        if let Some(path) = self.maps.get(*unit).filter(|_| key == "map") {
+            let path = rest.iter().fold(path.clone(), |path, step| path.then(step.clone()));
+            return Place { path, part: place.part };
+        }
+        let Some(origin) = self.tables.get(*unit).filter(|_| key == "table") else { return place };
         let Origin::Table { path, lists } = origin else {
             return Place { path: Path::root().key("engine"), part: Part::Value };
         };
@@ -89,11 +99,11 @@ impl Origins {
     }
 }
 
-/// Reads the keys of a file.
-pub(super) fn read(root: &DeTable<'_>, faults: &mut Faults) -> Document {
+/// Reads the keys of a file. The images of its maps lie in `folder`.
+pub(super) fn read(root: &DeTable<'_>, folder: &File, faults: &mut Faults) -> Document {
     let section = Section::new(root, &Path::root(), "the recipe", ROOT, faults);
     section.require("name", "name = \"my-tables\"", faults);
-    if section.get("engine").is_none() {
+    if section.get("engine").is_none() && section.get("map").is_none() {
         section.require("table", "[[table]]", faults);
     }
     let mut document = Document {
@@ -103,14 +113,22 @@ pub(super) fn read(root: &DeTable<'_>, faults: &mut Faults) -> Document {
     };
     if let Some(id) = section.text("engine", faults) {
         document.drafts = engine(&id, faults);
-        document.origins.0.extend(document.drafts.iter().map(|_| Origin::Engine));
+        document.origins.tables.extend(document.drafts.iter().map(|_| Origin::Engine));
     }
-    let Some(tables) = section.tables("table", "[[table]]", faults) else { return document };
-    check_count(tables.len(), faults);
-    for (path, table) in tables.into_iter().take(MAX_TABLES) {
+    let maps = section.tables("map", "[[map]]", faults).unwrap_or_default();
+    let tables = section.tables("table", "[[table]]", faults);
+    if tables.is_some() || section.get("map").is_some() {
+        let others = maps.len() + usize::from(tables.is_none()) * document.drafts.len();
+        check_count([tables.as_ref().map_or(0, Vec::len), others], faults);
+    }
+    for (path, map) in maps.into_iter().take(MAX_TABLES) {
+        document.maps.push(read_map::read(map, &path, folder, faults));
+        document.origins.maps.push(path);
+    }
+    for (path, table) in tables.into_iter().flatten().take(MAX_TABLES) {
         let (draft, origin) = entry(table, path, faults);
         document.drafts.push(draft);
-        document.origins.0.push(origin);
+        document.origins.tables.push(origin);
     }
     document
 }
@@ -124,7 +142,7 @@ fn engine(id: &str, faults: &mut Faults) -> Vec<Draft> {
     };
     let (root, _) = DeTable::parse_recoverable(found.recipe);
     let mut inner = Faults::default();
-    let drafts = read(root.get_ref(), &mut inner).drafts;
+    let drafts = read(root.get_ref(), File::new(""), &mut inner).drafts;
     for (_, fault) in inner.list {
         faults.value(path.clone(), fault);
     }

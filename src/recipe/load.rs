@@ -1,6 +1,6 @@
 //! Recipes from disk.
 
-use super::{MAX_BYTES, RecipeError, parse};
+use super::{MAX_BYTES, RecipeError, parse_in};
 use crate::plan::Plan;
 use std::fs::File;
 use std::io::Read;
@@ -44,7 +44,7 @@ pub fn load(path: &Path) -> Result<Plan, LoadError> {
     let limit = MAX_BYTES as u64 + 1;
     File::open(path).map_err(io)?.take(limit).read_to_end(&mut bytes).map_err(io)?;
     match std::str::from_utf8(&bytes) {
-        Ok(text) => Ok(parse(text, &file)?),
+        Ok(text) => Ok(parse_in(text, &file, path.parent().unwrap_or(Path::new("")))?),
         Err(e) => {
             let valid = bytes.get(..e.valid_up_to()).and_then(|b| std::str::from_utf8(b).ok());
             Err(RecipeError::not_utf8(&file, valid.unwrap_or_default()).into())

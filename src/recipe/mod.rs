@@ -1,4 +1,4 @@
-//! Recipes: TOML files that say which tables to bake. A recipe is read into requests, which the room [`plan`](crate::plan) judges and
+//! Recipes: TOML files that say which tables to bake, and which maps to make. A recipe is read into requests, which the room [`plan`](crate::plan) judges and
 //! resolves into a [`Plan`]; here its faults get the line and column that their places stand at.
 //!
 //! # The file
@@ -36,6 +36,29 @@
 //! id = "roughness"
 //! length = 64
 //! ```
+//! * **Maps**: `[[map]]` is a normal and a roughness map with filtered levels, the request of the command `map`; page
+//!   [`maps`](crate::guide::maps) says what it makes. Files are relative to the folder of the recipe.
+//!
+//! ```toml
+//! [[map]]                          # at most 256 of them; `table` may then be left out
+//! name = "bark"                    # required; how the names of its files begin
+//! normal = "bark-normal.png"       # or { file, channels = ["R", "G", "B"], green = "up" | "down", z = "stored" | "derived",
+//!                                  #   scale = 1.0, signed = "off", wrap = "repeat" | "mirror" | "clamp" or two of them,
+//!                                  #   mend = "off", resample = "off" }; flat without one
+//! roughness = 0.4                  # a number, a file, or { file, channel = "G", space = "linear" | "srgb",
+//!                                  #   holds = "roughness" | "gloss", from = { lobe, range, log = "off", rule = "nearest" } }
+//! packing = "image"                # other channels of that file too; or "single", or "gltf": R and B as glTF has them
+//! factor = 1.0                     # of the roughness; what is written is for a factor of 1
+//! rule = "fit"                     # an id of `list rules`
+//! normals = "mean"                 # or "fit": lobes stand about fitted normals, which are written
+//! shape = "isotropic"              # or "anisotropic"
+//! effort = "fast"                  # or "exact"
+//! objective = "normals"            # or "reflected"
+//! outputs = ["ktx2"]               # containers, with storages or not: "ktx2:roughness=bc4+normal=bc5"
+//! check = 32                       # texels of a level that are measured, beside the worst
+//! compare = "off"                  # or "on": every published rule at the same texels
+//! ```
+//!
 //! * **Warps**, on the domain normalised to v in [0, 1]: `"linear"`; `"sqrt"` = `{ power = 0.5 }`; `"square"` =
 //!   `{ power = 2 }`; `{ power = p }`, w = v^p; `"sqrt-one-minus"` = `{ one-minus-power = 0.5 }`;
 //!   `{ one-minus-power = p }`, w = 1 - (1 - v)^p; `{ coupled = "alpha", power = 2.0, scale = 1.0, exponent = 1.0 }`,
@@ -93,6 +116,7 @@ mod engines;
 mod load;
 mod preset;
 mod read_axis;
+mod read_map;
 mod read_size;
 mod section;
 mod span;
@@ -108,15 +132,22 @@ pub use write::text;
 use crate::plan::faults::Faults;
 use crate::plan::resolve::resolve;
 use crate::plan::{Fault, Plan};
+use std::path::Path;
 
 /// Most bytes of a recipe file.
 pub const MAX_BYTES: usize = 1 << 20;
 
-/// Reads a recipe. `file_name` is used in messages only.
+/// Reads a recipe. `file_name` is that of messages; the images of maps are found from its folder on.
 ///
 /// # Errors
 /// [`RecipeError`] with every fault of the text.
 pub fn parse(source: &str, file_name: &str) -> Result<Plan, RecipeError> {
+    let folder = Path::new(file_name).parent().unwrap_or(Path::new(""));
+    parse_in(source, file_name, folder)
+}
+
+/// As [`parse`], with the folder of the images.
+pub(crate) fn parse_in(source: &str, file_name: &str, folder: &Path) -> Result<Plan, RecipeError> {
     let source = source.strip_prefix('\u{feff}').unwrap_or(source);
     if source.len() > MAX_BYTES {
         let fault = Fault::FileTooLarge { bytes: source.len(), limit: MAX_BYTES };
@@ -127,11 +158,12 @@ pub fn parse(source: &str, file_name: &str) -> Result<Plan, RecipeError> {
         return Err(diagnostic::syntax(source, file_name, &errors));
     }
     let mut faults = Faults::default();
-    let document = document::read(root.get_ref(), &mut faults);
+    let document = document::read(root.get_ref(), folder, &mut faults);
     let mut judged = Faults::default();
-    let plan = resolve(document.name.as_deref(), document.tolerance, document.drafts, &mut judged);
+    let document::Document { name, tolerance, drafts, maps, origins } = document;
+    let plan = resolve(name.as_deref(), tolerance, drafts, maps, &mut judged);
     for (place, fault) in judged.list {
-        faults.push(document.origins.locate(place), fault);
+        faults.push(origins.locate(place), fault);
     }
     faults.dropped += judged.dropped;
     match plan {

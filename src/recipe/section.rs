@@ -198,15 +198,19 @@ pub(super) fn as_number(value: &DeValue<'_>) -> Option<f64> {
     }
 }
 
+/// Keys that are `"on"` or `"off"`.
+const SWITCHES: [&str; 6] = ["reconstruction", "signed", "mend", "resample", "log", "compare"];
+
 /// A value of the wrong type.
 pub(super) fn wrong(key: &str, value: &DeValue<'_>, expected: &'static str) -> Fault {
     let remedy = match (value, expected) {
         (DeValue::String(s), "a number") if s.trim().parse::<f64>().is_ok() => Some("leave the quotes out"),
         (DeValue::Float(_), "an integer") => Some("write it without a decimal point"),
+        (DeValue::Table(_), "[[map]]") => Some("write [[map]], with double brackets"),
         (DeValue::Table(_), "[[table]]") => Some("write [[table]], with double brackets"),
         (DeValue::Table(_), "[[table.axis]]") => Some("write [[table.axis]], with double brackets"),
-        (DeValue::Boolean(true), _) if key == "reconstruction" => Some("write \"on\""),
-        (DeValue::Boolean(false), _) if key == "reconstruction" => Some("write \"off\""),
+        (DeValue::Boolean(true), _) if SWITCHES.contains(&key) => Some("write \"on\""),
+        (DeValue::Boolean(false), _) if SWITCHES.contains(&key) => Some("write \"off\""),
         _ => None,
     };
     let got = match value {

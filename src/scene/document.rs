@@ -45,8 +45,12 @@ pub(super) fn scene(tree: &Value, bin: Option<&[u8]>, limits: &Limits) -> Result
     };
     scene.warnings = declaration_warnings(&scene);
     let shaded = scene.materials.iter().filter(|m| m.used && m.lit);
-    let wanted: BTreeSet<usize> =
-        shaded.flat_map(|m| m.sampled(limits.colours)).filter_map(|s| s.image).collect();
+    let wanted: BTreeSet<usize> = if limits.maps {
+        let textures = shaded.flat_map(|m| [&m.maps.normal, &m.maps.roughness]);
+        textures.flatten().filter_map(|t| t.image).collect()
+    } else {
+        shaded.flat_map(|m| m.sampled(limits.colours)).filter_map(|s| s.image).collect()
+    };
     scene.images = embedded::images(&root, &wanted, bin, limits)?;
     Ok(scene)
 }

@@ -8,13 +8,45 @@ use super::error::Fault;
 use super::image::{Image, Source};
 use super::json::Node;
 use super::uri::{Checked, check_uri};
+use crate::picture::Wrap;
 use std::collections::BTreeSet;
 
 /// Extensions of a texture that name an image of their own, in the order in which they are looked at after the core `source`.
 const SOURCES: [&str; 4] = ["EXT_texture_webp", "KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds"];
 
-/// The image of each texture.
-pub(super) fn textures(root: &Node<'_>) -> Result<Vec<Option<usize>>, Fault> {
+/// A texture: its image, if it has one that is known, and what lies beyond its border.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Texture {
+    pub(super) image: Option<usize>,
+    pub(super) wrap: [Wrap; 2],
+}
+
+impl Default for Texture {
+    fn default() -> Texture {
+        Texture { image: None, wrap: [Wrap::Repeat; 2] }
+    }
+}
+
+/// Modes of a sampler, as OpenGL numbers them.
+const MODES: [(u64, Wrap); 3] = [(10497, Wrap::Repeat), (33071, Wrap::Clamp), (33648, Wrap::Mirror)];
+
+/// The wrap modes of each sampler.
+fn samplers(root: &Node<'_>) -> Result<Vec<[Wrap; 2]>, Fault> {
+    let Some(list) = root.get("samplers")? else { return Ok(Vec::new()) };
+    let mut all = Vec::with_capacity(list.len()?);
+    for sampler in list.items()? {
+        let mode = |key: &'static str| -> Result<Wrap, Fault> {
+            let mode = sampler.get(key)?.map_or(Ok(10497), |mode| mode.whole())?;
+            Ok(MODES.iter().find(|(m, _)| *m == mode).map_or(Wrap::Repeat, |(_, wrap)| *wrap))
+        };
+        all.push([mode("wrapS")?, mode("wrapT")?]);
+    }
+    Ok(all)
+}
+
+/// The image of each texture, and how it goes on.
+pub(super) fn textures(root: &Node<'_>) -> Result<Vec<Texture>, Fault> {
+    let samplers = samplers(root)?;
     let count = root.get("images")?.map_or(Ok(0), |images| images.len())?;
     let Some(list) = root.get("textures")? else { return Ok(Vec::new()) };
     let mut all = Vec::with_capacity(list.len()?);
@@ -29,7 +61,9 @@ pub(super) fn textures(root: &Node<'_>) -> Result<Vec<Option<usize>>, Fault> {
                 }
             }
         }
-        all.push(image);
+        let sampler = texture.get("sampler")?.map(|s| s.index("samplers", samplers.len())).transpose()?;
+        let wrap = sampler.and_then(|s| samplers.get(s)).copied().unwrap_or([Wrap::Repeat; 2]);
+        all.push(Texture { image, wrap });
     }
     Ok(all)
 }

@@ -15,6 +15,8 @@ pub enum Spread {
     Texels(u32),
     /// An animation (`KHR_animation_pointer`).
     Animation,
+    /// The levels of filtered maps.
+    Maps,
 }
 
 /// The values that a number can take over a surface and over time.
@@ -66,6 +68,7 @@ impl fmt::Display for Interval {
             Spread::Texture => write!(f, "[{}, {}] (texture)", self.lo, self.hi),
             Spread::Texels(1) => write!(f, "{} (texture of one level)", self.lo),
             Spread::Texels(n) => write!(f, "[{}, {}] (texture of {n} levels)", self.lo, self.hi),
+            Spread::Maps => write!(f, "[{}, {}] (levels of filtered maps)", self.lo, self.hi),
             Spread::Animation => write!(f, "[{}, {}] (animation)", self.lo, self.hi),
         }
     }

@@ -4,11 +4,13 @@
 
 use std::collections::BTreeSet;
 
+use super::embedded::Texture;
 use super::error::Fault;
 use super::extension::{self, Asks, Switch};
 use super::factor::{Channel, Factor, Interval, Property, Sampled};
 use super::image::Look;
 use super::json::{Allowed, Node, UNIT};
+use super::maps::{self, Maps};
 
 /// Whether an extension of a material does anything there, with the factor that says so.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,6 +49,8 @@ pub struct Material {
     pub extensions: Vec<MaterialExtension>,
     /// Materials that stand in for it at a distance (`MSFT_lod`).
     pub lods: Vec<usize>,
+    /// The textures that filtered maps are made of.
+    pub maps: Maps,
 }
 
 /// The base layer: glTF 2.0 §3.9.2. The texture has metalness in blue and roughness in green.
@@ -156,7 +160,7 @@ pub(super) struct Tables<'a> {
     /// Number of materials.
     pub(super) materials: usize,
     /// The image of each texture.
-    pub(super) textures: &'a [Option<usize>],
+    pub(super) textures: &'a [Texture],
 }
 
 /// Reads `materials[index]`. It is not marked as used.
@@ -176,6 +180,7 @@ pub(super) fn read(
         core: Vec::new(),
         extensions: Vec::new(),
         lods: Vec::new(),
+        maps: maps::read(node, tables.textures, animated)?,
     };
     // The two extensions that pack roughness into another texture replace the core texture.
     let mut packed = None;
@@ -270,5 +275,5 @@ fn read_factors(
 fn texture(node: &Node<'_>, key: &str, tables: Tables<'_>) -> Result<Option<Option<usize>>, Fault> {
     let Some(info) = node.get(key)? else { return Ok(None) };
     let index = info.need("index", "the index of a texture")?.index("textures", tables.textures.len())?;
-    Ok(Some(tables.textures.get(index).copied().flatten()))
+    Ok(Some(tables.textures.get(index).and_then(|t| t.image)))
 }

@@ -28,6 +28,7 @@ mod factor;
 mod glb;
 mod image;
 mod json;
+mod maps;
 mod material;
 mod needs;
 mod parse;
@@ -52,6 +53,7 @@ pub use extension::{
 pub use factor::{Channel, Factor, Interval, Property, Sampled, Spread};
 pub use image::{Image, Look, Source};
 pub use json::{ASYMMETRY, Allowed, IOR, NOT_NEGATIVE, UNIT};
+pub use maps::{MapTexture, Maps};
 pub use material::{CORE, Material, MaterialExtension, State};
 pub use needs::{AskedBy, Id, LeftOut, LeftOutKind, MOST_VALUES, MaterialRef, Need, Needs, Range};
 pub use reader::Reader;
@@ -71,6 +73,8 @@ pub struct Limits {
     pub data_uri_bytes: u64,
     /// Are images of colours in [`Scene::images`], too? They decide over no table. Default false.
     pub colours: bool,
+    /// List the images of normals and roughness that filtered maps are made of, in place of those that factors are multiplied by.
+    pub maps: bool,
 }
 
 impl Default for Limits {
@@ -82,6 +86,7 @@ impl Default for Limits {
             json_values: 2_000_000,
             data_uri_bytes: 128 * MIB,
             colours: false,
+            maps: false,
         }
     }
 }

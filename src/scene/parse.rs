@@ -27,6 +27,7 @@ const KEPT: &[&str] = &[
     "materials",
     "meshes",
     "nodes",
+    "samplers",
     "textures",
 ];
 

@@ -9,6 +9,8 @@ pub struct Reader {
     pub at_least: f64,
     /// Does it add to roughness what the normals of a pixel differ by? Then it may be anything above.
     pub widens: bool,
+    /// Are filtered maps planned? Their levels are rougher than the textures wherever there are normals to be filtered.
+    pub maps: bool,
     /// How far tables go beyond what the file says, on either side.
     pub margin: f64,
 }

@@ -1,5 +1,5 @@
 // The official glTF validator on scenes before and after brdfbake wrote its tables into them: errors and warnings are those of the
-// old scene; infos are too, but for one UNSUPPORTED_EXTENSION and one UNUSED_OBJECT for each buffer view that holds a table.
+// old scene; infos are too, but for one UNSUPPORTED_EXTENSION and one UNUSED_OBJECT for each buffer view that holds a table or map.
 //
 //     cd PACKAGES && node scene_rules.mjs OLD NEW [OLD NEW ...]      PACKAGES has the npm package gltf-validator
 //
@@ -35,7 +35,7 @@ for (let i = 0; i + 1 < paths.length; i += 2) {
     const [wanted, got] = [await messages(paths[i]), await messages(paths[i + 1])];
     // a scene that needs no table has none
     const object = scene(paths[i + 1]).extensions?.BRDFBAKE_lookup_tables;
-    const files = (object?.tables ?? []).flatMap((table) => table.files);
+    const files = [...(object?.tables ?? []), ...(object?.maps ?? [])].flatMap((unit) => unit.files);
     const views = new Set(files.map((file) => file.bufferView).filter((view) => view !== undefined)).size;
     const add = (key, n) => n > 0 && (wanted[key] = (wanted[key] ?? 0) + n);
     add('2 UNSUPPORTED_EXTENSION', object ? 1 : 0);
@@ -43,7 +43,7 @@ for (let i = 0; i + 1 < paths.length; i += 2) {
     const text = (counts) => JSON.stringify(Object.entries(counts).sort());
     const fine = text(wanted) === text(got);
     failed += !fine;
-    console.log(`${fine ? 'ok  ' : 'FAIL'} ${paths[i + 1]}: ${views} tables inside${fine ? '' : `, ${text(got)}, expected ${text(wanted)}`}`);
+    console.log(`${fine ? 'ok  ' : 'FAIL'} ${paths[i + 1]}: ${views} files inside${fine ? '' : `, ${text(got)}, expected ${text(wanted)}`}`);
 }
 console.log(`${paths.length / 2} scenes, ${failed} that the validator judges otherwise`);
 process.exit(failed === 0 && paths.length > 1 ? 0 : 1);

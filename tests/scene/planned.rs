@@ -160,7 +160,7 @@ fn dispersion_spreads_the_index_over_three() {
 #[test]
 fn shaders_that_clamp_and_widen_are_followed() {
     let scene = scene_of(&pbr(r#""roughnessFactor": 0"#, ""), MESH, "");
-    let reader = Reader { at_least: 0.0525, widens: true, margin: 0.0 };
+    let reader = Reader { at_least: 0.0525, widens: true, ..Reader::default() };
     let needs = brdfbake::scene::analyse_with(&scene, &brdfbake::scene::Look::none(), reader);
     assert_eq!(range(&needs, "ggx", "roughness"), [0.0525, 1.0]);
     let reader = Reader { margin: 0.1, ..Reader::default() };

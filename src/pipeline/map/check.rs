@@ -2,18 +2,19 @@
 //!
 //! The filter works on merged footprints; here every facet of the first level counts (a regular choice of [`MOST`] where there are more).
 
-use super::output::{Kind, Map};
-use super::{MapError, MapRequest};
+use super::MapError;
+use super::output::{Map, failed};
 use crate::cancel::Cancel;
-use crate::encode::mips::{self, Mips};
+use crate::encode::{Storage, mips};
 use crate::maps::{
     Centre, Effort, Facet, Fitter, Footprint, Level, Lobe, Objective, RULES, Surface, Texel, reflected, rules,
 };
 use crate::picture::{Coverage, halved};
+use crate::plan::map::{Kind, MapRequest, Output};
 use crate::verify::seeds::Seeds;
 use glam::DVec3;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Most facets of a footprint that is measured.
 const MOST: usize = 4096;
@@ -22,7 +23,7 @@ const MOST: usize = 4096;
 const WORST: usize = 20;
 
 /// What the measurement of a level came to.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// Texels that were measured: a seeded choice, and the twenty worst.
     pub texels: usize,
@@ -36,27 +37,46 @@ pub struct Measured {
     pub stored_mean: f64,
     /// Largest D after storage.
     pub stored_largest: f64,
+    /// The same with normals of 16 and of 8 bits a component, where normals are fitted: what fewer bits lose.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub normals: Vec<StoredMeasured>,
     /// The published rules at the same texels, if they were asked for.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub rules: Vec<RuleMeasured>,
 }
 
-/// What a rule came to.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct RuleMeasured {
-    /// Id.
-    pub rule: &'static str,
+/// D after storage of normals.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StoredMeasured {
+    /// Storage of the normals.
+    pub storage: String,
     /// Mean of D.
     pub mean: f64,
     /// Largest D.
     pub largest: f64,
 }
 
+/// What a rule came to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RuleMeasured {
+    /// Id.
+    pub rule: String,
+    /// Mean of D.
+    pub mean: f64,
+    /// Largest D.
+    pub largest: f64,
+}
+
+/// Storages of fitted normals that are compared.
+const NORMALS: [Storage; 2] = [Storage::Unorm16, Storage::Unorm8];
+
 /// One texel: D told, before storage, after it, and of the rules.
 struct Sample {
     told: f64,
     before: f64,
     after: f64,
+    /// With normals of each of [`NORMALS`].
+    normals: Vec<f64>,
     rules: Vec<f64>,
 }
 
@@ -73,7 +93,8 @@ pub(super) fn measure(
     for (k, level) in levels.iter().enumerate().skip(1) {
         cover = [0, 1].map(|axis| cover[axis].then(&Coverage::new(sizes[k - 1][axis], sizes[k][axis])));
         let chosen = choose(level, k, request.check);
-        let stored = stored(request, maps, k, cancel)?;
+        let stored = stored(request.outputs.first(), request, maps, k, cancel)?;
+        let others = with_normals(request, maps, k, cancel)?;
         let one = |fitter: &mut Fitter, texel: &usize| -> Result<Option<Sample>, MapError> {
             cancel.check()?;
             let facets = gather(surface, &cover, texel % level.size[0], texel / level.size[0]);
@@ -89,8 +110,9 @@ pub(super) fn measure(
             };
             let before = distance(&own.lobe());
             let after = distance(&stored.lobe(*texel, own));
+            let normals = others.iter().map(|s| distance(&s.lobe(*texel, own))).collect();
             let rules = if request.compare { compare(fitter, &footprint, request) } else { Vec::new() };
-            Ok(Some(Sample { told: f64::from(own.distance), before, after, rules }))
+            Ok(Some(Sample { told: f64::from(own.distance), before, after, normals, rules }))
         };
         let samples: Result<Vec<Option<Sample>>, MapError> =
             chosen.par_iter().map_init(|| Fitter::new(Effort::Fast), one).collect();
@@ -122,11 +144,21 @@ fn sum(samples: &[Sample]) -> Measured {
         miss: largest(&|s| (s.before - s.told).abs()),
         stored_mean: mean(&|s| s.after),
         stored_largest: largest(&|s| s.after),
+        normals: NORMALS
+            .iter()
+            .take(samples.first().map_or(0, |s| s.normals.len()))
+            .enumerate()
+            .map(|(i, storage)| StoredMeasured {
+                storage: storage.id().to_owned(),
+                mean: mean(&|s| s.normals[i]),
+                largest: largest(&|s| s.normals[i]),
+            })
+            .collect(),
         rules: published()
             .take(compared)
             .enumerate()
             .map(|(i, r)| RuleMeasured {
-                rule: r.id,
+                rule: r.id.to_owned(),
                 mean: mean(&|s| s.rules[i]),
                 largest: largest(&|s| s.rules[i]),
             })
@@ -175,17 +207,36 @@ struct Stored {
     anisotropy: Option<Vec<f32>>,
 }
 
-fn stored(request: &MapRequest, maps: &[Map], k: usize, cancel: &Cancel) -> Result<Stored, MapError> {
-    let Some(output) = request.outputs.first() else {
+/// The first output with its normals in each of [`NORMALS`]; nothing where none are written.
+fn with_normals(
+    request: &MapRequest,
+    maps: &[Map],
+    k: usize,
+    cancel: &Cancel,
+) -> Result<Vec<Stored>, MapError> {
+    let Some(first) = request.outputs.first().filter(|_| request.kinds().contains(&Kind::Normal)) else {
+        return Ok(Vec::new());
+    };
+    let one =
+        |normal: &Storage| stored(Some(&Output { normal: *normal, ..*first }), request, maps, k, cancel);
+    NORMALS.iter().map(one).collect()
+}
+
+fn stored(
+    output: Option<&Output>,
+    request: &MapRequest,
+    maps: &[Map],
+    k: usize,
+    cancel: &Cancel,
+) -> Result<Stored, MapError> {
+    let Some(output) = output else {
         return Ok(Stored { roughness: Vec::new(), normal: None, anisotropy: None });
     };
     let values = |kind: Kind| -> Result<Option<(Vec<f32>, usize)>, MapError> {
         let Some(map) = maps.iter().find(|m| m.kind == kind) else { return Ok(None) };
-        let (channels, levels) = (&map.channels, &map.levels);
-        let storage = output.storage(kind);
-        let pyramid = Mips { channels, levels, storage, provenance_json: "", identity: "", cancel };
-        let failed = |source| MapError::Encode { map: kind.id().to_owned(), source };
-        Ok(Some((mips::stored(&pyramid, &levels[k]).map_err(failed)?, channels.len())))
+        let pyramid = map.mips(output.storage(kind), cancel);
+        let values = mips::stored(&pyramid, k).map_err(|e| failed(kind, e))?;
+        Ok(Some((values, map.channels.len())))
     };
     let roughness = values(Kind::Roughness)?.map_or_else(Vec::new, |(v, n)| {
         let map = maps.iter().find(|m| m.kind == Kind::Roughness);

@@ -1,4 +1,5 @@
-//! Parameter maps from files to files: read, filter, measure, round, write as one transaction.
+//! Planned maps: read, filter, measure, round, encode. They are written with the tables of their plan, in its transaction; [`run`] is
+//! a plan of one map.
 //!
 //! The folder gets the maps, with all levels, a map of errors, and a manifest that [`audit`](super::audit) reads. Nothing is
 //! written if anything fails.
@@ -8,39 +9,19 @@ mod input;
 mod output;
 mod record;
 
-pub use check::{Measured, RuleMeasured};
-pub use input::{FromLobe, Input, RoughnessInput};
-pub use output::Output;
-pub use record::{LevelRecord, MapRecord, Place};
+pub use crate::plan::map::{FromLobe, Input, MapRequest, Output, RoughnessInput};
+pub use check::{Measured, RuleMeasured, StoredMeasured};
+pub use record::{InputRecord, Job, LevelRecord, MapEntry, MapFile, MapRecord, Place};
 
-use super::transaction::{self, Transaction, Waiting};
-use super::{MANIFEST, PipelineError, Settings, pool};
+use super::{Event, MANIFEST, PipelineError, Progress, Settings};
 use crate::cancel::{Cancel, Cancelled};
 use crate::encode::{EncodeError, ReadError};
 use crate::maps::{self, FilterError, TexelFault};
 use crate::picture::PictureError;
+use crate::plan::map::PlannedMap;
+use crate::plan::{Plan, PlanError};
 use std::path::PathBuf;
-
-/// What is asked for.
-#[derive(Debug, Clone)]
-pub struct MapRequest {
-    /// How the names of its files begin.
-    pub name: String,
-    /// The normal map; the normals are flat without one.
-    pub normal: Option<Input>,
-    /// The roughness.
-    pub roughness: RoughnessInput,
-    /// Factor of the roughness: `roughnessFactor` of glTF. What is written stands for a factor of 1.
-    pub factor: f64,
-    /// How a texel's lobe is found.
-    pub filter: maps::Settings,
-    /// Files that are written.
-    pub outputs: Vec<Output>,
-    /// Texels of a level that are measured against the texels of the maps themselves, beside the worst.
-    pub check: usize,
-    /// Measure every published rule at the same texels.
-    pub compare: bool,
-}
+use std::time::Instant;
 
 /// Why there are no maps.
 #[derive(Debug, thiserror::Error)]
@@ -76,32 +57,15 @@ pub enum MapError {
         /// Other texels with a fault.
         others: usize,
     },
-    /// A number out of range.
-    #[error("{what} = {got} outside {allowed}")]
-    Number {
-        /// What it is.
-        what: &'static str,
-        /// The number.
-        got: f64,
-        /// What it may be.
-        allowed: &'static str,
+    /// A file that is another one than when it was planned.
+    #[error("{path} has changed since the map was planned; run it again")]
+    Changed {
+        /// The file.
+        path: PathBuf,
     },
-    /// Maps of different sizes.
-    #[error(
-        "{a} has {} x {} texels, {b} has {} x {}: maps of one surface have one size. Resample one of them, or ask for it (--resample)",
-        .sizes[0][0], .sizes[0][1], .sizes[1][0], .sizes[1][1]
-    )]
-    Sizes {
-        /// One file.
-        a: PathBuf,
-        /// The other.
-        b: PathBuf,
-        /// Their sizes.
-        sizes: [[usize; 2]; 2],
-    },
-    /// Neither a normal map nor a roughness map: there is nothing to filter.
-    #[error("neither a normal map nor a roughness map is given: there is nothing to filter")]
-    Nothing,
+    /// The request cannot be.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
     /// The filter failed.
     #[error(transparent)]
     Filter(#[from] FilterError),
@@ -145,7 +109,7 @@ pub struct MapOutcome {
     pub unchanged: usize,
 }
 
-/// Reads, filters, measures and writes. `progress` is told of texels that are done and of their number.
+/// A map alone: planned, made and written. `progress` is told of texels that are done and of their number.
 ///
 /// # Errors
 /// [`MapError`]; the output folder is then as it was.
@@ -155,26 +119,66 @@ pub fn run(
     cancel: &Cancel,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<MapOutcome, MapError> {
-    let sources = input::read(request, cancel)?;
-    let pool = pool(settings.jobs)?;
-    let (levels, maps, measured) = pool.install(|| -> Result<_, MapError> {
-        let levels = maps::filter(&sources.surface, &request.filter, cancel, progress)?;
-        let maps = output::plan(request, &sources, &levels);
-        let measured = check::measure(request, &sources.surface, &levels, &maps, cancel)?;
-        Ok((levels, maps, measured))
-    })?;
-    let record = record::record(request, &sources, &levels, measured);
-    let files = pool.install(|| output::files(request, &maps, &record, cancel))?;
-    let names: Vec<String> = files.iter().map(|f| f.name.clone()).chain([MANIFEST.to_owned()]).collect();
-    let waiting = Waiting { timeout: settings.lock_timeout, told: &|| {} };
-    transaction::check(&settings.out, &names).map_err(PipelineError::from)?;
-    let (mut open, _) =
-        Transaction::begin(&settings.out, &names, cancel, &waiting).map_err(PipelineError::from)?;
-    for file in &files {
-        open.stage(&file.name, &file.bytes).map_err(PipelineError::from)?;
+    let plan = Plan::from_all(NAME, Vec::new(), vec![request.clone()])?;
+    let files = plan.maps.iter().flat_map(PlannedMap::files).chain([MANIFEST.to_owned()]).collect();
+    let outcome = match super::run(&plan, settings, cancel, &Told(progress)) {
+        Err(PipelineError::Map { error, .. }) => return Err(*error),
+        other => other?,
+    };
+    let Some(entry) = outcome.manifest.maps.into_iter().next() else {
+        return Err(PlanError { faults: Vec::new() }.into());
+    };
+    Ok(MapOutcome { record: entry.record, files, written: outcome.written, unchanged: outcome.unchanged })
+}
+
+/// Name of the plan of a map alone.
+const NAME: &str = "map";
+
+/// Progress of the one map of a plan.
+struct Told<'a>(&'a (dyn Fn(usize, usize) + Sync));
+
+impl Progress for Told<'_> {
+    fn event(&self, event: &Event<'_>) {
+        if let Event::MapProgress { done, texels, .. } = event {
+            (self.0)(*done, *texels);
+        }
     }
-    let manifest = record::manifest(&record, &files);
-    let written = open.commit(&manifest).map_err(PipelineError::from)?;
-    let files = names;
-    Ok(MapOutcome { record, files, written: written.written, unchanged: written.unchanged })
+}
+
+/// A map ready to be written.
+pub(super) struct Made {
+    pub(super) entry: MapEntry,
+    pub(super) files: Vec<(String, Vec<u8>)>,
+}
+
+/// Makes a map of the plan of this name.
+pub(super) fn make(
+    plan: &str,
+    planned: &PlannedMap,
+    index: usize,
+    cancel: &Cancel,
+    progress: &dyn Progress,
+) -> Result<Made, MapError> {
+    let (name, request, start) = (planned.name(), &planned.asked, Instant::now());
+    progress.event(&Event::MapStarted { map: name, index, size: planned.size });
+    let sources = input::read(planned, cancel)?;
+    let tell = |done, texels| progress.event(&Event::MapProgress { map: name, index, done, texels });
+    let levels = maps::filter(&sources.surface, &request.filter, cancel, &tell)?;
+    let maps = output::plan(request, &sources, &levels, cancel)?;
+    let measured = check::measure(request, &sources.surface, &levels, &maps, cancel)?;
+    let record = record::record(plan, planned, &sources, &levels, measured);
+    let files = output::files(planned, &maps, &record, cancel)?;
+    let told = record.levels.iter().map(|l| f64::from(l.largest)).fold(0.0, f64::max);
+    let entry = record.with(&files);
+    progress.event(&Event::MapFinished {
+        map: name,
+        index,
+        levels: entry.record.levels.len(),
+        largest: told,
+        hopeless: entry.record.levels.iter().map(|l| l.hopeless).sum(),
+        normals: &entry.record.normals,
+        shape: &entry.record.shape,
+        seconds: start.elapsed().as_secs_f64(),
+    });
+    Ok(Made { entry, files: files.into_iter().map(|f| (f.name, f.bytes)).collect() })
 }

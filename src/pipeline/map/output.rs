@@ -1,94 +1,61 @@
 //! The maps that are written: their channels, levels and files.
 
+use super::MapError;
 use super::input::Sources;
-use super::{MapError, MapRequest};
 use crate::cancel::Cancel;
-use crate::encode::Storage;
 use crate::encode::mips::{self, MipLevel, Mips};
+use crate::encode::{EncodeError, Storage};
 use crate::functions::conversion::gltf_anisotropy;
 use crate::grid::Channel;
-use crate::maps::{Centre, Level, Shape, Texel, signs};
+use crate::maps::{Level, Texel, signs};
 use crate::picture::shrink;
-
-/// A container, and how each map is stored in it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Output {
-    /// Container id, of [`mips::CONTAINERS`].
-    pub container: &'static str,
-    /// Storage of the roughness and of what is packed with it.
-    pub roughness: Storage,
-    /// Storage of normals.
-    pub normal: Storage,
-    /// Storage of anisotropy.
-    pub anisotropy: Storage,
-    /// Storage of errors.
-    pub error: Storage,
-}
-
-impl Output {
-    /// The usual storages of a container: 8 bits for roughness and anisotropy, 16 for normals, halves for errors and in EXR.
-    #[must_use]
-    pub fn new(container: &'static str) -> Output {
-        let (unorm8, unorm16) = (Storage::Unorm8, Storage::Unorm16);
-        match container {
-            "exr" => {
-                let float = Storage::Float;
-                Output { container, roughness: float, normal: float, anisotropy: float, error: Storage::Half }
-            }
-            "png" => {
-                Output { container, roughness: unorm8, normal: unorm16, anisotropy: unorm8, error: unorm8 }
-            }
-            _ => {
-                let error = Storage::Half;
-                Output { container, roughness: unorm8, normal: unorm16, anisotropy: unorm8, error }
-            }
-        }
-    }
-
-    /// The storage of a map.
-    pub(super) fn storage(&self, kind: Kind) -> Storage {
-        match kind {
-            Kind::Roughness => self.roughness,
-            Kind::Normal => self.normal,
-            Kind::Anisotropy => self.anisotropy,
-            Kind::Error => self.error,
-        }
-    }
-}
-
-/// What a map holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    Roughness,
-    Normal,
-    Anisotropy,
-    Error,
-}
-
-impl Kind {
-    pub(super) const fn id(self) -> &'static str {
-        match self {
-            Kind::Roughness => "roughness",
-            Kind::Normal => "normal",
-            Kind::Anisotropy => "anisotropy",
-            Kind::Error => "error",
-        }
-    }
-}
+use crate::plan::map::{self, Kind, MapRequest, PlannedMap};
 
 /// A map before it is rounded.
 pub(super) struct Map {
     pub(super) kind: Kind,
     pub(super) channels: Vec<Channel>,
     pub(super) levels: Vec<MipLevel>,
+    /// The bytes of each level in each storage of blocks that is asked for.
+    blocks: Vec<(Storage, Vec<Vec<u8>>)>,
+}
+
+impl Map {
+    /// As it is stored; in blocks that are compressed once.
+    pub(super) fn mips<'a>(&'a self, storage: Storage, cancel: &'a Cancel) -> Mips<'a> {
+        let blocks = self.blocks.iter().find(|(s, _)| *s == storage).map_or(&[][..], |(_, b)| b);
+        let (channels, levels) = (&self.channels, &self.levels);
+        Mips { channels, levels, storage, blocks, provenance_json: "", identity: "", cancel }
+    }
+
+    /// With the blocks of every storage that a request asks for.
+    fn compressed(mut self, request: &MapRequest, cancel: &Cancel) -> Result<Map, MapError> {
+        for output in &request.outputs {
+            let storage = output.storage(self.kind);
+            if storage.is_block() && !self.blocks.iter().any(|(s, _)| *s == storage) {
+                let made = mips::blocks(&self.mips(storage, cancel)).map_err(|e| failed(self.kind, e))?;
+                self.blocks.push((storage, made));
+            }
+        }
+        Ok(self)
+    }
+}
+
+pub(super) fn failed(kind: Kind, source: EncodeError) -> MapError {
+    match source {
+        EncodeError::Cancelled(e) => MapError::from(e),
+        source => MapError::Encode { map: kind.id().to_owned(), source },
+    }
 }
 
 /// A finished file.
 pub(super) struct File {
     pub(super) name: String,
-    pub(super) map: &'static str,
+    pub(super) kind: Kind,
+    pub(super) level: Option<usize>,
     pub(super) container: &'static str,
     pub(super) storage: Storage,
+    pub(super) channels: Vec<String>,
     pub(super) bytes: Vec<u8>,
 }
 
@@ -96,22 +63,15 @@ fn channel(id: &str, meaning: &str, range: [f64; 2]) -> Channel {
     Channel { id: id.to_owned(), meaning: meaning.to_owned(), range, role: String::new() }
 }
 
-/// The kinds that a request writes.
-fn kinds(request: &MapRequest) -> Vec<Kind> {
-    let mut kinds = vec![Kind::Roughness];
-    if request.filter.centre == Centre::Free {
-        kinds.push(Kind::Normal);
-    }
-    if request.filter.shape == Shape::Anisotropic && request.filter.rule.anisotropic {
-        kinds.push(Kind::Anisotropy);
-    }
-    kinds.push(Kind::Error);
-    kinds
-}
-
 /// Every map of a request.
-pub(super) fn plan(request: &MapRequest, sources: &Sources, levels: &[Level]) -> Vec<Map> {
-    kinds(request).into_iter().map(|kind| map(kind, request, sources, levels)).collect()
+pub(super) fn plan(
+    request: &MapRequest,
+    sources: &Sources,
+    levels: &[Level],
+    cancel: &Cancel,
+) -> Result<Vec<Map>, MapError> {
+    let one = |kind| map(kind, request, sources, levels).compressed(request, cancel);
+    request.kinds().into_iter().map(one).collect()
 }
 
 fn map(kind: Kind, request: &MapRequest, sources: &Sources, levels: &[Level]) -> Map {
@@ -122,8 +82,7 @@ fn map(kind: Kind, request: &MapRequest, sources: &Sources, levels: &[Level]) ->
         Kind::Normal => {
             let down = request.normal.as_ref().is_some_and(|n| n.convention.green_down);
             let sense = if down { -1.0 } else { 1.0 };
-            let block = request.outputs.iter().any(|o| o.normal == Storage::Bc5);
-            let n = if block { 2 } else { 3 };
+            let n = if request.drops_z() { 2 } else { 3 };
             let meanings = ["n.x, along the tangent", "n.y, along the bitangent", "n.z, along the normal"];
             let ids = ["normal.x", "normal.y", "normal.z"];
             let channels = (0..n).map(|c| channel(ids[c], meanings[c], signed)).collect();
@@ -155,7 +114,7 @@ fn map(kind: Kind, request: &MapRequest, sources: &Sources, levels: &[Level]) ->
             (channels, each(levels, |t| vec![t.distance.clamp(0.0, 1.0), t.doubt.min(1.0)]))
         }
     };
-    Map { kind, channels, levels }
+    Map { kind, channels, levels, blocks: Vec::new() }
 }
 
 fn each(levels: &[Level], values: impl Fn(&Texel) -> Vec<f32>) -> Vec<MipLevel> {
@@ -182,6 +141,7 @@ fn roughness(sources: &Sources, levels: &[Level]) -> Map {
             kind: Kind::Roughness,
             channels: vec![own],
             levels: each(levels, |t| vec![t.roughness]),
+            blocks: Vec::new(),
         };
     };
     let channels = picture.planes.iter().enumerate().map(|(c, plane)| match c {
@@ -205,12 +165,12 @@ fn roughness(sources: &Sources, levels: &[Level]) -> Map {
         }
         out.push(MipLevel { size: level.size, values });
     }
-    Map { kind: Kind::Roughness, channels: channels.collect(), levels: out }
+    Map { kind: Kind::Roughness, channels: channels.collect(), levels: out, blocks: Vec::new() }
 }
 
 /// The bytes of all files.
 pub(super) fn files(
-    request: &MapRequest,
+    planned: &PlannedMap,
     maps: &[Map],
     record: &super::MapRecord,
     cancel: &Cancel,
@@ -218,24 +178,25 @@ pub(super) fn files(
     let mut out = Vec::new();
     for map in maps {
         let kind = map.kind;
-        for output in &request.outputs {
+        for output in &planned.asked.outputs {
             let storage = output.storage(kind);
             let provenance = record.of(kind.id(), &map.channels, storage);
-            let pyramid = Mips {
-                channels: &map.channels,
-                levels: &map.levels,
-                storage,
-                provenance_json: &provenance,
-                identity: &record.recipe.hash,
-                cancel,
-            };
-            let failed = |source| match source {
-                crate::encode::EncodeError::Cancelled(e) => MapError::from(e),
-                source => MapError::Encode { map: kind.id().to_owned(), source },
-            };
-            for (end, bytes) in mips::encode(output.container, &pyramid).map_err(failed)? {
-                let name = format!("{}.{}{end}", request.name, kind.id());
-                out.push(File { name, map: kind.id(), container: output.container, storage, bytes });
+            let (provenance_json, identity) = (provenance.as_str(), planned.identity.as_str());
+            let pyramid = Mips { provenance_json, identity, ..map.mips(storage, cancel) };
+            let files = mips::encode(output.encoder, &pyramid).map_err(|e| failed(kind, e))?;
+            let each = files.len() > 1 || !output.encoder.holds_all_levels();
+            for (k, (end, bytes)) in files.into_iter().enumerate() {
+                let (name, level) = (map::file(planned.name(), kind, &end), each.then_some(k));
+                let channels = map.channels.iter().map(|c| c.id.clone()).collect();
+                out.push(File {
+                    name,
+                    kind,
+                    level,
+                    container: output.encoder.id(),
+                    storage,
+                    channels,
+                    bytes,
+                });
             }
         }
     }

@@ -1,13 +1,14 @@
 //! What the files of a map say of themselves: inputs, rule, and how far every level is from the texels that it stands for.
 
+use super::RoughnessInput;
 use super::check::Measured;
 use super::input::Sources;
 use super::output::File;
-use super::{MapRequest, RoughnessInput};
 use crate::encode::Storage;
 use crate::grid::Channel;
-use crate::maps::{Centre, Effort, Level, Objective, Shape};
-use serde::Serialize;
+use crate::maps::Level;
+use crate::plan::map::{PlannedMap, words};
+use serde::{Deserialize, Serialize};
 
 /// Version of this layout.
 const SCHEMA: u32 = 1;
@@ -19,7 +20,7 @@ pub(super) const HOPELESS: f32 = 0.5;
 const LISTED: usize = 20;
 
 /// A map and its certificate. No clock, host or path.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MapRecord {
     /// Version of this layout.
     pub schema: u32,
@@ -38,13 +39,13 @@ pub struct MapRecord {
     /// Its formula.
     pub formula: String,
     /// `mean` or `fit`.
-    pub normals: &'static str,
+    pub normals: String,
     /// `isotropic` or `anisotropic`.
-    pub shape: &'static str,
+    pub shape: String,
     /// `fast` or `exact`.
-    pub effort: &'static str,
+    pub effort: String,
     /// `normals` or `reflected`: what the fit makes small, and what `distance` is.
-    pub objective: &'static str,
+    pub objective: String,
     /// Levels, the largest first.
     pub levels: Vec<LevelRecord>,
     /// Texels that the lobe is farthest from, of all levels.
@@ -52,19 +53,19 @@ pub struct MapRecord {
 }
 
 /// Name and hash, as tables have them.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Job {
     /// Name.
     pub name: String,
-    /// blake3 of what was asked, and of the inputs.
+    /// Identity of the map: hash of what was asked, and of the inputs.
     pub hash: String,
 }
 
 /// A file that was read.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct InputRecord {
     /// `normal` or `roughness`.
-    pub role: &'static str,
+    pub role: String,
     /// Its name, without the folder; the number, if it is one.
     pub file: String,
     /// blake3 of its bytes; empty for a number.
@@ -72,7 +73,7 @@ pub struct InputRecord {
 }
 
 /// A texel that the lobe is far from.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Place {
     /// Level.
     pub level: usize,
@@ -87,7 +88,7 @@ pub struct Place {
 }
 
 /// What is known of a level.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LevelRecord {
     /// Width and height in texels.
     pub size: [usize; 2],
@@ -104,7 +105,7 @@ pub struct LevelRecord {
     /// Texels with D of 0.5 and more: no lobe tells what is there.
     pub hopeless: usize,
     /// What a measurement against the texels of the maps came to; none for the first level.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none", default)]
     pub measured: Option<Measured>,
 }
 
@@ -119,57 +120,93 @@ impl MapRecord {
         }
         value.to_string()
     }
+
+    /// The entry of the manifest.
+    pub(super) fn with(self, files: &[File]) -> MapEntry {
+        let file = |f: &File| MapFile {
+            file: f.name.clone(),
+            map: f.kind.id().to_owned(),
+            level: f.level,
+            container: f.container.to_owned(),
+            bytes: f.bytes.len() as u64,
+            blake3: blake3::hash(&f.bytes).to_hex().to_string(),
+            storage: f.storage.id().to_owned(),
+            channels: f.channels.clone(),
+        };
+        MapEntry { record: self, files: files.iter().map(file).collect() }
+    }
+}
+
+/// A map in the manifest.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MapEntry {
+    /// What every file of it says of itself.
+    #[serde(flatten)]
+    pub record: MapRecord,
+    /// The files.
+    pub files: Vec<MapFile>,
+}
+
+/// A file of a map.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MapFile {
+    /// Name, relative to the manifest.
+    pub file: String,
+    /// Kind of map: `roughness`, `normal`, `anisotropy`, `error`.
+    pub map: String,
+    /// Its level, in containers with a file a level.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub level: Option<usize>,
+    /// Container id.
+    pub container: String,
+    /// Size in bytes.
+    pub bytes: u64,
+    /// blake3 of the bytes.
+    pub blake3: String,
+    /// Storage id.
+    pub storage: String,
+    /// Ids of its channels.
+    pub channels: Vec<String>,
 }
 
 pub(super) fn record(
-    request: &MapRequest,
+    plan: &str,
+    planned: &PlannedMap,
     sources: &Sources,
     levels: &[Level],
     measured: Vec<Option<Measured>>,
 ) -> MapRecord {
+    let request = &planned.asked;
     let filter = &request.filter;
     let mut inputs: Vec<InputRecord> = sources
         .files
         .iter()
-        .map(|(role, file, blake3)| InputRecord { role, file: file.clone(), blake3: blake3.clone() })
+        .map(|(role, file, blake3)| InputRecord {
+            role: (*role).to_owned(),
+            file: file.clone(),
+            blake3: blake3.clone(),
+        })
         .collect();
     if let RoughnessInput::Constant(r) = &request.roughness {
-        inputs.push(InputRecord { role: "roughness", file: r.to_string(), blake3: String::new() });
+        let (role, file) = ("roughness".to_owned(), r.to_string());
+        inputs.push(InputRecord { role, file, blake3: String::new() });
     }
-    let levels_told = levels.iter().zip(measured).map(|(l, m)| level(l, m)).collect();
-    let mut record = MapRecord {
+    MapRecord {
         schema: SCHEMA,
         tool: crate::pipeline::manifest::tool(),
-        recipe: Job { name: "map".to_owned(), hash: String::new() },
+        recipe: Job { name: plan.to_owned(), hash: planned.identity.clone() },
         name: request.name.clone(),
         inputs,
         factor: request.factor,
         rule: filter.rule.id.to_owned(),
         formula: filter.rule.formula.to_owned(),
-        normals: if filter.centre == Centre::Free { "fit" } else { "mean" },
-        shape: if filter.shape == Shape::Anisotropic { "anisotropic" } else { "isotropic" },
-        effort: if filter.effort == Effort::Exact { "exact" } else { "fast" },
-        objective: if filter.objective == Objective::Reflected { "reflected" } else { "normals" },
-        levels: levels_told,
+        normals: words::of(&words::CENTRES, &filter.centre).to_owned(),
+        shape: words::of(&words::SHAPES, &filter.shape).to_owned(),
+        effort: words::of(&words::EFFORTS, &filter.effort).to_owned(),
+        objective: words::of(&words::OBJECTIVES, &filter.objective).to_owned(),
+        levels: levels.iter().zip(measured).map(|(l, m)| level(l, m)).collect(),
         worst: worst(levels),
-    };
-    let text = serde_json::to_string(&record).unwrap_or_default();
-    let asked = format!("{text}{}{:?}", options(request), request.outputs);
-    record.recipe.hash = blake3::hash(asked.as_bytes()).to_hex().to_string();
-    record
-}
-
-/// What was asked of the inputs, without their paths: their bytes are in the record.
-fn options(request: &MapRequest) -> String {
-    let normal = request.normal.as_ref().map(|n| (&n.channels, n.convention, n.signed, n.wrap, n.resample));
-    let roughness = match &request.roughness {
-        RoughnessInput::Constant(r) => format!("{r}"),
-        RoughnessInput::Image { channel, space, gloss, single, from, path: _ } => {
-            let from = from.map(|f| (f.conversion.id, f.range, f.log, f.by));
-            format!("{channel} {space:?} {gloss} {single} {from:?}")
-        }
-    };
-    format!("{normal:?}{roughness}")
+    }
 }
 
 fn level(level: &Level, measured: Option<Measured>) -> LevelRecord {
@@ -205,39 +242,4 @@ fn worst(levels: &[Level]) -> Vec<Place> {
         all.truncate(LISTED);
     }
     all
-}
-
-/// The manifest: as that of tables, each map with its files.
-pub(super) fn manifest(record: &MapRecord, files: &[File]) -> Vec<u8> {
-    let mut maps: Vec<&str> = Vec::new();
-    files.iter().for_each(|f| {
-        if !maps.contains(&f.map) {
-            maps.push(f.map);
-        }
-    });
-    let file = |f: &File| {
-        serde_json::json!({
-            "file": f.name,
-            "container": f.container,
-            "bytes": f.bytes.len(),
-            "blake3": blake3::hash(&f.bytes).to_hex().to_string(),
-            "storage": f.storage.id(),
-        })
-    };
-    let table = |map: &&str| {
-        let own: Vec<_> = files.iter().filter(|f| f.map == *map).map(file).collect();
-        serde_json::json!({ "name": format!("{}.{map}", record.name), "recipe": record.recipe, "files": own })
-    };
-    let tables: Vec<_> = maps.iter().map(table).collect();
-    let manifest = serde_json::json!({
-        "schema": crate::grid::provenance::SCHEMA,
-        "tool": record.tool,
-        "recipe": record.recipe.name,
-        "hash": record.recipe.hash,
-        "tables": tables,
-        "map": record,
-    });
-    let mut bytes = serde_json::to_vec_pretty(&manifest).unwrap_or_default();
-    bytes.push(b'\n');
-    bytes
 }

@@ -161,10 +161,40 @@ pub(super) fn copies(draft: Draft, request: &Request, target: &Target) -> Result
     let mut out = Copies { draft, inputs: vec![request.scene.clone()], files: Vec::new(), notes: Vec::new() };
     let all = references(&out.draft.parts.text).unwrap_or_default();
     let packed = out.draft.embeds();
-    for reference in all.iter().filter(|r| !(packed && r.at() == FIRST)) {
-        copy(reference, request, target, &mut out)?;
+    let wanted = || all.iter().filter(|r| !(packed && r.at() == FIRST));
+    // files below the scene keep their names; those from above take what is left
+    for above in [false, true] {
+        for reference in wanted() {
+            if matches!(check_uri(&reference.uri, u64::MAX), Ok(Checked::Above(_))) == above {
+                copy(reference, request, target, &mut out)?;
+            }
+        }
     }
     Ok(out)
+}
+
+/// A name for bytes in place of one that may be taken by others: in the folder, or among the files that the scene takes along.
+fn free_name(name: &str, bytes: &[u8], target: &Target, out: &Copies) -> String {
+    let taken = |name: &str| {
+        let own = out.files.iter().find(|(n, _)| n.eq_ignore_ascii_case(name)).map(|(_, b)| b == bytes);
+        let path = target.folder.join(name);
+        let there = || path.exists().then(|| fs::read(&path).is_ok_and(|old| old == bytes));
+        own.or_else(there).is_some_and(|same| !same) || name.eq_ignore_ascii_case(&target.name)
+    };
+    if !taken(name) {
+        return name.to_owned();
+    }
+    // the same bytes always get the same name
+    let hash = blake3::hash(bytes).to_hex();
+    let (stem, end) = match name.rsplit_once('.').filter(|(_, end)| !end.contains('/')) {
+        Some((stem, end)) => (stem, format!(".{end}")),
+        None => (name, String::new()),
+    };
+    [8, 16, 32]
+        .map(|n| format!("{stem}-{}{end}", &hash[..n]))
+        .into_iter()
+        .find(|n| !taken(n))
+        .unwrap_or_else(|| format!("{stem}-{hash}{end}"))
 }
 
 fn copy(
@@ -202,7 +232,8 @@ fn copy(
 }
 
 /// A file above the scene's folder: where the scene is written beside the old one it stays, else it is copied to its path below the
-/// root, and its URI says so.
+/// root, and its URI says so. A file of other bytes that has this name, there or among those of the scene, keeps it: the copy then gets a
+/// name with a part of its hash.
 fn copy_from_above(
     reference: &Reference,
     names: &[String],
@@ -231,12 +262,9 @@ fn copy_from_above(
         out.notes.push(Note::Missing { at, uri });
         return Ok(());
     };
-    match out.files.iter().find(|(other, _)| *other == name) {
-        Some((_, other)) if *other != bytes => {
-            return Err(SceneWriteError::Twice { path: target.folder.join(name) });
-        }
-        Some(_) => {}
-        None => out.files.push((name.clone(), bytes)),
+    let name = free_name(&name, &bytes, target, out);
+    if !out.files.iter().any(|(other, _)| *other == name) {
+        out.files.push((name.clone(), bytes));
     }
     reference.patch(&mut out.draft.patch).set(serde_json::Value::from(escape(&name)));
     Ok(())

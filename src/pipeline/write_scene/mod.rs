@@ -14,20 +14,25 @@
 pub mod convert;
 mod error;
 mod files;
+mod rewrite;
 
 pub use error::SceneWriteError;
 pub use files::{Note, Target};
 
-use super::manifest::{FileRecord, Manifest, tool};
+use super::manifest::{Manifest, tool};
+use super::map::{LevelRecord, MapEntry, MapFile};
 use super::transaction::{Transaction, Waiting};
 use super::{MANIFEST, Settings};
 use crate::cancel::Cancel;
 use crate::encode;
+use crate::plan::map::Kind;
+use crate::scene::write::maps::{self, Uses};
 use crate::scene::write::tables::{self, Place, Serves};
 use crate::scene::write::{self, Draft};
 use crate::scene::{Limits, Scene};
 use convert::{Converted, Mode};
 use files::Copies;
+use serde_json::json;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -45,6 +50,10 @@ pub struct Request {
     pub keep_tables: bool,
     /// The tables of each material.
     pub serves: Vec<Serves>,
+    /// The map of each material that has one.
+    pub uses: Vec<Uses>,
+    /// Put the base level of these maps into the core textures, for readers that do not know the extension.
+    pub rewrite: bool,
     /// How specular-glossiness materials are converted; they stay as they are if none.
     pub convert: Option<Mode>,
     /// Files below this folder may be read too; without it only those below the scene's own.
@@ -63,6 +72,8 @@ impl Request {
             place: Place::default(),
             keep_tables: false,
             serves: Vec::new(),
+            uses: Vec::new(),
+            rewrite: false,
             convert: None,
             root: None,
             limits: Limits::default(),
@@ -83,6 +94,8 @@ pub struct SceneOutcome {
     pub unchanged: usize,
     /// What became of materials that were converted.
     pub converted: Vec<Converted>,
+    /// Materials whose core textures are the base level of their map now.
+    pub rewritten: Vec<usize>,
     /// What could not be taken along.
     pub notes: Vec<Note>,
 }
@@ -115,8 +128,12 @@ pub fn write(
     if bake.is_some() || !request.keep_tables {
         add_tables(&mut draft, request, &target, bake)?;
     }
+    let rewritten = match bake.filter(|_| request.rewrite) {
+        Some(bake) => rewrite::rewrite(&mut draft, request, &target, bake)?,
+        None => Vec::new(),
+    };
     let done = commit(draft, &scene, request, &target, settings, cancel)?;
-    Ok(SceneOutcome { converted, ..done })
+    Ok(SceneOutcome { converted, rewritten, ..done })
 }
 
 /// What converting the specular-glossiness materials of a scene would cost; nothing is written.
@@ -145,7 +162,47 @@ fn open(request: &Request, target: &Target) -> Result<(Draft, Scene), SceneWrite
     Ok((draft, scene))
 }
 
-/// Reads the tables and puts them into the draft.
+/// The files of a bake, read and told to be what its manifest says.
+struct Read<'a> {
+    bytes: BTreeMap<&'a str, Vec<u8>>,
+    /// What stands before their names in paths from the scene, if they stay where they are.
+    inside: Option<String>,
+    stem: &'a str,
+}
+
+impl<'a> Read<'a> {
+    fn new(bake: Bake<'a>, draft: &Draft, target: &'a Target) -> Result<Read<'a>, SceneWriteError> {
+        let Bake { manifest, folder } = bake;
+        let inside = if draft.embeds() { None } else { target.path_of(folder) };
+        let mut bytes: BTreeMap<&str, Vec<u8>> = BTreeMap::new();
+        let tables = manifest.tables.iter().flat_map(|t| &t.files).map(|f| (&f.file, &f.blake3));
+        let maps = manifest.maps.iter().flat_map(|m| &m.files).filter(|f| is_shown(f));
+        for (file, blake3) in tables.chain(maps.map(|f| (&f.file, &f.blake3))) {
+            if !bytes.contains_key(file.as_str()) {
+                bytes.insert(file, read_file(folder, file, blake3)?);
+            }
+        }
+        Ok(Read { bytes, inside, stem: target.stem() })
+    }
+
+    fn blob(&self, file: &str, blake3: &'a str, container: &'a str) -> tables::Blob<'_> {
+        let (path, named) = match &self.inside {
+            Some(prefix) => (format!("{prefix}{file}"), true),
+            None => (format!("{}-tables/{file}", self.stem), false),
+        };
+        let media_type =
+            encode::encoder(container).map_or("application/octet-stream", encode::Encoder::media_type);
+        let bytes = self.bytes.get(file).map_or(&[][..], Vec::as_slice);
+        tables::Blob { path, named, bytes, blake3, container, media_type }
+    }
+}
+
+/// Is a file of a map one that is looked at? The map of errors is not.
+fn is_shown(file: &MapFile) -> bool {
+    file.map != Kind::Error.id()
+}
+
+/// Reads the tables and maps and puts them into the draft.
 fn add_tables(
     draft: &mut Draft,
     request: &Request,
@@ -153,58 +210,73 @@ fn add_tables(
     bake: Option<Bake<'_>>,
 ) -> Result<(), SceneWriteError> {
     let failed = |source| SceneWriteError::Draft { file: target.name.clone(), source };
-    let Some(Bake { manifest, folder }) = bake else {
-        return tables::add(draft, &tool(), &[], &[], request.place).map_err(failed);
+    let Some(bake) = bake else {
+        return tables::add(draft, &tool(), &tables::Baked::default(), request.place).map_err(failed);
     };
-    let inside = if draft.embeds() { None } else { target.path_of(folder) };
-    let mut bytes: BTreeMap<&str, Vec<u8>> = BTreeMap::new();
-    for record in manifest.tables.iter().flat_map(|t| &t.files) {
-        if !bytes.contains_key(record.file.as_str()) {
-            bytes.insert(&record.file, read_table(folder, record)?);
-        }
-    }
-    let file = |record: &'_ FileRecord| -> (String, bool) {
-        match &inside {
-            Some(prefix) => (format!("{prefix}{}", record.file), true),
-            None => (format!("{}-tables/{}", target.stem(), record.file), false),
-        }
+    let read = Read::new(bake, draft, target)?;
+    let tables = bake.manifest.tables.iter().map(|table| tables::Table {
+        provenance: &table.provenance,
+        size: &table.size,
+        files: table
+            .files
+            .iter()
+            .map(|record| tables::File {
+                blob: read.blob(&record.file, &record.blake3, &record.container),
+                encoding: &record.encoding,
+                reconstruction: record.reconstruction.as_ref(),
+                texels: record.texels.as_ref(),
+                as_read: record.as_read.as_ref(),
+            })
+            .collect(),
+    });
+    let maps = bake.manifest.maps.iter().map(|map| maps::Map {
+        name: &map.record.name,
+        identity: &map.record.recipe.hash,
+        told: told(map),
+        files: map
+            .files
+            .iter()
+            .filter(|f| is_shown(f))
+            .map(|f| maps::File {
+                blob: read.blob(&f.file, &f.blake3, &f.container),
+                kind: &f.map,
+                level: f.level,
+                storage: &f.storage,
+                channels: &f.channels,
+            })
+            .collect(),
+    });
+    let baked = tables::Baked {
+        tables: tables.collect(),
+        maps: maps.collect(),
+        serves: &request.serves,
+        uses: &request.uses,
     };
-    let all: Vec<tables::Table<'_>> = manifest
-        .tables
-        .iter()
-        .map(|table| tables::Table {
-            provenance: &table.provenance,
-            size: &table.size,
-            files: table
-                .files
-                .iter()
-                .map(|record| {
-                    let (path, named) = file(record);
-                    tables::File {
-                        path,
-                        named,
-                        bytes: bytes.get(record.file.as_str()).map_or(&[], Vec::as_slice),
-                        blake3: &record.blake3,
-                        container: &record.container,
-                        media_type: encode::encoder(&record.container)
-                            .map_or("application/octet-stream", encode::Encoder::media_type),
-                        encoding: &record.encoding,
-                        reconstruction: record.reconstruction.as_ref(),
-                        texels: record.texels.as_ref(),
-                        as_read: record.as_read.as_ref(),
-                    }
-                })
-                .collect(),
-        })
-        .collect();
-    tables::add(draft, &tool(), &all, &request.serves, request.place).map_err(failed)
+    tables::add(draft, &tool(), &baked, request.place).map_err(failed)
 }
 
-/// A file of a table, as the manifest says that it is.
-fn read_table(folder: &Path, record: &FileRecord) -> Result<Vec<u8>, SceneWriteError> {
-    let path = folder.join(&record.file);
+/// What a scene is told of a map.
+fn told(map: &MapEntry) -> serde_json::Map<String, serde_json::Value> {
+    let record = &map.record;
+    let level = |l: &LevelRecord| {
+        let largest = f64::from(l.largest);
+        json!({ "size": l.size, "mean": l.mean, "largest": largest, "hopeless": l.hopeless })
+    };
+    let told = json!({
+        "rule": record.rule,
+        "normals": record.normals,
+        "shape": record.shape,
+        "objective": record.objective,
+        "levels": record.levels.iter().map(level).collect::<Vec<_>>(),
+    });
+    told.as_object().cloned().unwrap_or_default()
+}
+
+/// A file of a bake, as the manifest says that it is.
+fn read_file(folder: &Path, file: &str, blake3: &str) -> Result<Vec<u8>, SceneWriteError> {
+    let path = folder.join(file);
     let bytes = fs::read(&path).map_err(|source| SceneWriteError::Read { path: path.clone(), source })?;
-    if blake3::hash(&bytes).to_hex().as_str() == record.blake3 {
+    if blake3::hash(&bytes).to_hex().as_str() == blake3 {
         Ok(bytes)
     } else {
         Err(SceneWriteError::Changed { path })
@@ -243,6 +315,7 @@ fn commit(
         written: written.written,
         unchanged: written.unchanged,
         converted: Vec::new(),
+        rewritten: Vec::new(),
         notes,
     })
 }

@@ -24,6 +24,7 @@ mod fuzz;
 mod ggx;
 mod glass;
 mod kept;
+mod maps;
 mod phase;
 mod pictures;
 mod reasons;
@@ -40,6 +41,7 @@ use axes::Draft;
 use serde::Serialize;
 
 pub use kept::Kept;
+pub use maps::{AskedMap, KINDS, MapAsker, SceneMaps, maps};
 pub use pictures::{PIXELS, Pictures, bytes_of};
 pub use reasons::reasons;
 pub use survey::{Survey, SurveyOptions, Surveyed, survey, survey_with};

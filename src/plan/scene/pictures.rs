@@ -2,7 +2,8 @@
 
 use crate::encode::read as pictures;
 use crate::picture::{self, Levels, Picture, PictureError};
-use crate::scene::{Image, Look, Scene, Source, resolve};
+use crate::plan::map::Source as MapSource;
+use crate::scene::{Image, Look, Scene, Source, UriError, resolve};
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -66,6 +67,22 @@ impl Pictures {
         let found = scene.images.iter().find(|i| i.index == image);
         let image = found.ok_or_else(|| format!("images[{image}] is not read"))?;
         self.with(image, folder, |bytes| picture::read_within(bytes, self.limit).map_err(|e| e.to_string()))
+    }
+
+    /// An image of a scene in `folder`, not decoded: its file, or its bytes where it is a part of one.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    pub fn source(&self, scene: &Scene, image: usize, folder: &Path) -> Result<MapSource, String> {
+        let found = scene.images.iter().find(|i| i.index == image);
+        let image = found.ok_or_else(|| format!("images[{image}] is not read"))?;
+        if let Source::File { names, part: None } = &image.source {
+            let root = self.root.as_deref().unwrap_or(folder);
+            let said = |e: UriError| format!("{}: {e}", crate::math::shown::show(&names.join("/")));
+            return resolve(folder, root, names).map(MapSource::File).map_err(said);
+        }
+        let name = image.at.clone();
+        self.with(image, folder, |bytes| Ok(MapSource::Memory { name, bytes: bytes.into() }))
     }
 
     /// What is made of the bytes of an image.

@@ -118,7 +118,7 @@ fn look(path: &Path, pictures: &Pictures, reader: Reader) -> Result<Found, Scene
 }
 
 /// The paths below the folder that all of them share: no more of the machine than tells them apart.
-fn names(files: &[PathBuf]) -> Vec<String> {
+pub(super) fn names(files: &[PathBuf]) -> Vec<String> {
     let parents: Vec<Vec<_>> =
         files.iter().map(|f| f.parent().map(|p| p.components().collect()).unwrap_or_default()).collect();
     let first = parents.first().cloned().unwrap_or_default();

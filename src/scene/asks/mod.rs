@@ -66,7 +66,11 @@ impl Subject<'_> {
     /// Perceptual roughness of the base layer.
     #[must_use]
     pub fn roughness(&self) -> Interval {
-        self.reader.roughness(self.range("", "roughnessFactor"))
+        let own = self.reader.roughness(self.range("", "roughnessFactor"));
+        if self.reader.maps && self.material.widens() {
+            return Interval { hi: 1.0, spread: Spread::Maps, ..own };
+        }
+        own
     }
 
     /// Perceptual roughness of another lobe of the material.

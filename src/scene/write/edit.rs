@@ -84,6 +84,18 @@ impl Patch {
         &mut self.members[index].1
     }
 
+    /// What is to become of a member, if anything is.
+    #[must_use]
+    pub fn member_ref(&self, key: &str) -> Option<&Patch> {
+        self.members.iter().find(|(k, _)| k == key).map(|(_, patch)| patch)
+    }
+
+    /// How many values are put behind the last element of this array.
+    #[must_use]
+    pub fn count_pushed(&self) -> usize {
+        self.pushed.len()
+    }
+
     /// What is to become of an element of an array.
     pub fn element(&mut self, index: usize) -> &mut Patch {
         self.elements.entry(index).or_default()

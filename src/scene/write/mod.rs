@@ -11,6 +11,7 @@
 
 pub mod edit;
 pub mod glb;
+pub mod maps;
 pub mod raw;
 mod references;
 pub mod tables;
@@ -36,6 +37,12 @@ pub enum DraftError {
     /// It does not fit into its container.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
+    /// A map that there is not.
+    #[error("a material uses map `{0}`, which was not made")]
+    Map(
+        /// The name.
+        String,
+    ),
     /// Tables that there are not.
     #[error("a material is served by table `{0}`, which was not baked")]
     Table(

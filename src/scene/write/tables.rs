@@ -1,4 +1,4 @@
-//! The tables of a bake in a scene: the root extension `BRDFBAKE_lookup_tables`, and which of them serve which material.
+//! The tables and maps of a bake in a scene: the root extension `BRDFBAKE_lookup_tables`, and which of them serve which material.
 //!
 //! The name is provisional: its prefix is not registered with Khronos. The extension is listed in `extensionsUsed` and never in
 //! `extensionsRequired`: a reader that does not know it shows the scene as before. [`LOOKUP_TABLES_SCHEMA`] says what each member means.
@@ -10,8 +10,9 @@
 
 use std::collections::BTreeMap;
 
-use serde_json::{Map, Value, json};
+use serde_json::{Map as Object, Value, json};
 
+use super::maps::{self, Map, Uses};
 use super::{Draft, DraftError, Patch, Raw, Stored, raw};
 use crate::grid::Provenance;
 use crate::grid::provenance::{Encoding, Reconstruction, TexelRecord};
@@ -36,9 +37,9 @@ pub struct Table<'a> {
     pub files: Vec<File<'a>>,
 }
 
-/// A file of a table.
+/// A file that is put into a scene, or named by it.
 #[derive(Debug)]
-pub struct File<'a> {
+pub struct Blob<'a> {
     /// Path of the file relative to the scene, as it is or as it would be written.
     pub path: String,
     /// True if it is there already, and is only named.
@@ -51,6 +52,13 @@ pub struct File<'a> {
     pub container: &'a str,
     /// Its media type.
     pub media_type: &'a str,
+}
+
+/// A file of a table.
+#[derive(Debug)]
+pub struct File<'a> {
+    /// Where it is, and its bytes.
+    pub blob: Blob<'a>,
     /// How the values are stored.
     pub encoding: &'a Encoding,
     /// Errors of reading.
@@ -76,31 +84,32 @@ pub enum Place {
 /// The tables that serve a material: its index (none for the default material) and their names.
 pub type Serves = (Option<usize>, Vec<String>);
 
-/// Puts tables into a draft. What an earlier bake put there is replaced.
+/// What a material reads: indices of tables, and the members that tell of its map.
+type Reads = (Vec<usize>, Object<String, Value>);
+
+/// What a bake puts into a scene.
+#[derive(Debug, Default)]
+pub struct Baked<'a> {
+    /// The tables.
+    pub tables: Vec<Table<'a>>,
+    /// The maps.
+    pub maps: Vec<Map<'a>>,
+    /// The tables of each material.
+    pub serves: &'a [Serves],
+    /// The map of each material that has one.
+    pub uses: &'a [Uses],
+}
+
+/// Puts tables and maps into a draft. What an earlier bake put there is replaced.
 ///
 /// # Errors
-/// [`DraftError::Table`] for a name that no table has, and [`DraftError::Edit`] for a scene that is no JSON.
-pub fn add(
-    draft: &mut Draft,
-    tool: &str,
-    tables: &[Table<'_>],
-    serves: &[Serves],
-    place: Place,
-) -> Result<(), DraftError> {
-    let kept = Kept::of(draft)?;
-    let mut stored: Vec<(&str, Stored)> = Vec::new();
+/// [`DraftError::Table`] and [`DraftError::Map`] for a name that none has, and [`DraftError::Edit`] for a scene that is no JSON.
+pub fn add(draft: &mut Draft, tool: &str, baked: &Baked<'_>, place: Place) -> Result<(), DraftError> {
+    let Baked { tables, maps, serves, uses } = baked;
+    let mut keeper = Keeper { kept: Kept::of(draft)?, stored: Vec::new() };
     let mut list = Vec::with_capacity(tables.len());
     for table in tables {
-        let files = table.files.iter().map(|file| {
-            let known = stored.iter().find(|(path, _)| *path == file.path).map(|(_, at)| at.clone());
-            let at = known.unwrap_or_else(|| match kept.view(file) {
-                _ if file.named => Stored::Beside(file.path.clone()),
-                Some(view) => Stored::View(view),
-                None => draft.store(&file.path, file.bytes),
-            });
-            stored.push((&file.path, at.clone()));
-            describe_file(file, &at)
-        });
+        let files = table.files.iter().map(|file| describe_file(file, keeper.describe(draft, &file.blob)));
         let files = files.collect();
         list.push(describe_table(table, files));
     }
@@ -118,22 +127,31 @@ pub fn add(
         let found = tables.iter().position(|t| t.provenance.name == *name);
         found.ok_or_else(|| DraftError::Table(name.clone()))
     };
-    let mut materials: BTreeMap<Option<usize>, Vec<usize>> = BTreeMap::new();
+    if !maps.is_empty() {
+        object["maps"] = maps::describe(draft, &mut keeper, maps).into();
+    }
+    let mut materials: BTreeMap<Option<usize>, Reads> = BTreeMap::new();
     for (material, names) in serves.iter().filter(|(_, names)| !names.is_empty()) {
         let indices = names.iter().map(index).collect::<Result<Vec<_>, _>>()?;
-        materials.entry(*material).or_default().extend(indices);
+        materials.entry(*material).or_default().0.extend(indices);
     }
-    let entry = |(material, mut tables): (Option<usize>, Vec<usize>)| {
+    for (material, name) in *uses {
+        materials.entry(Some(*material)).or_default().1 = maps::used(maps, name)?;
+    }
+    let entry = |(material, (mut tables, map)): (Option<usize>, Reads)| {
         tables.sort_unstable();
         tables.dedup();
-        match material {
-            Some(material) => json!({ "material": material, "tables": tables }),
-            None => json!({ "tables": tables }),
+        let mut entry = Object::new();
+        entry.extend(material.map(|m| ("material".to_owned(), m.into())));
+        if !tables.is_empty() {
+            entry.insert("tables".to_owned(), json!(tables));
         }
+        entry.extend(map);
+        Value::Object(entry)
     };
     object["materials"] = materials.into_iter().map(entry).collect();
-    // a scene that needs no table is told of none
-    let any = !tables.is_empty();
+    // a scene that needs nothing is told of none
+    let any = !tables.is_empty() || !maps.is_empty();
     declare(draft, any && place != Place::Extras)?;
     put(draft, "extensions", (any && place != Place::Extras).then_some(&object))?;
     put(draft, "extras", (any && place != Place::Extension).then_some(&object))
@@ -172,7 +190,33 @@ fn declare(draft: &mut Draft, used: bool) -> Result<(), DraftError> {
     Ok(())
 }
 
-/// Tables that an earlier bake put into the binary chunk.
+/// Where the files of a bake are kept, each once.
+pub(super) struct Keeper {
+    kept: Kept,
+    stored: Vec<(String, Stored)>,
+}
+
+impl Keeper {
+    /// Keeps a file, and tells where it is and what it is.
+    pub(super) fn describe(&mut self, draft: &mut Draft, blob: &Blob<'_>) -> Object<String, Value> {
+        let known = self.stored.iter().find(|(path, _)| *path == blob.path).map(|(_, at)| at.clone());
+        let at = known.unwrap_or_else(|| match self.kept.view(blob) {
+            _ if blob.named => Stored::Beside(blob.path.clone()),
+            Some(view) => Stored::View(view),
+            None => draft.store(&blob.path, blob.bytes),
+        });
+        self.stored.push((blob.path.clone(), at.clone()));
+        let mut out = Object::new();
+        out.extend(at.members().into_iter().map(|(key, value)| (key.to_owned(), value)));
+        out.insert("mimeType".to_owned(), blob.media_type.into());
+        out.insert("container".to_owned(), blob.container.into());
+        out.insert("byteLength".to_owned(), blob.bytes.len().into());
+        out.insert("blake3".to_owned(), blob.blake3.into());
+        out
+    }
+}
+
+/// Files that an earlier bake put into the binary chunk.
 struct Kept(Vec<(String, usize)>);
 
 impl Kept {
@@ -181,10 +225,10 @@ impl Kept {
         let mut kept = Vec::new();
         let (Some(bin), true) = (&draft.parts.bin, draft.embeds()) else { return Ok(Kept(kept)) };
         let views = root.get("bufferViews").and_then(Raw::items).unwrap_or_default();
-        for key in ["extensions", "extras"] {
-            let tables = root.find(&[key, NAME, "tables"]).map(Raw::value).unwrap_or_default();
-            for file in
-                tables.as_array().into_iter().flatten().filter_map(|t| t["files"].as_array()).flatten()
+        let lists = ["extensions", "extras"].map(|key| ["tables", "maps"].map(|list| [key, NAME, list]));
+        for path in lists.into_iter().flatten() {
+            let units = root.find(&path).map(Raw::value).unwrap_or_default();
+            for file in units.as_array().into_iter().flatten().filter_map(|t| t["files"].as_array()).flatten()
             {
                 let Some(index) = file["bufferView"].as_u64().and_then(|i| usize::try_from(i).ok()) else {
                     continue;
@@ -202,14 +246,14 @@ impl Kept {
     }
 
     /// The view that holds the bytes of a file.
-    fn view(&self, file: &File<'_>) -> Option<usize> {
+    fn view(&self, file: &Blob<'_>) -> Option<usize> {
         self.0.iter().find(|(hash, _)| hash == file.blake3).map(|(_, view)| *view)
     }
 }
 
 fn describe_table(table: &Table<'_>, files: Vec<Value>) -> Value {
     let told = table.provenance;
-    let mut out = Map::new();
+    let mut out = Object::new();
     let mut put = |key: &str, value: Value| {
         let nothing = ["residuals", "waived"].contains(&key) && value.as_array().is_some_and(Vec::is_empty);
         if !value.is_null() && !nothing {
@@ -232,16 +276,8 @@ fn describe_table(table: &Table<'_>, files: Vec<Value>) -> Value {
     Value::Object(out)
 }
 
-fn describe_file(file: &File<'_>, at: &Stored) -> Value {
-    let mut out = Map::new();
-    for (key, value) in at.members() {
-        out.insert(key.to_owned(), value);
-    }
+fn describe_file(file: &File<'_>, mut out: Object<String, Value>) -> Value {
     let more = [
-        ("mimeType", json!(file.media_type)),
-        ("container", json!(file.container)),
-        ("byteLength", json!(file.bytes.len())),
-        ("blake3", json!(file.blake3)),
         ("encoding", json!(file.encoding)),
         ("reconstruction", json!(file.reconstruction)),
         ("texels", json!(file.texels)),

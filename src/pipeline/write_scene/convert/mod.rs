@@ -8,6 +8,7 @@ mod apply;
 mod read;
 
 use crate::cancel::Cancel;
+use crate::encode::exr::Exr;
 use crate::encode::mips::{self, MipLevel, Mips};
 use crate::encode::{EncodeError, Storage};
 use crate::grid::Channel;
@@ -101,11 +102,12 @@ pub fn error_maps(all: &[Converted], cancel: &Cancel) -> Result<Vec<(String, Vec
             channels: &channels,
             levels: &levels,
             storage: Storage::Float,
+            blocks: &[],
             provenance_json: &provenance_json,
             identity: "",
             cancel,
         };
-        for (end, bytes) in mips::encode("exr", &mips)? {
+        for (end, bytes) in mips::encode(&Exr, &mips)? {
             out.push((format!("material{}.f0-error{end}", one.material), bytes));
         }
     }

@@ -1,0 +1,49 @@
+//! The faults of a map as those of the options of `brdfbake map`.
+
+use super::{Exit, Failure};
+use crate::plan::{Fault, PlanError, Step};
+
+/// Options of the keys of a request.
+const OPTIONS: &[(&[&str], &str)] = &[
+    (&["normal", "channels"], "--normal-channels"),
+    (&["normal", "scale"], "--normal-scale"),
+    (&["normal"], "--normal"),
+    (&["roughness", "channel"], "--channel"),
+    (&["roughness", "from", "range"], "--range"),
+    (&["roughness"], "--roughness"),
+    (&["shape"], "--anisotropic"),
+    (&["normals"], "--normals fit"),
+    (&["objective"], "--objective"),
+    (&["outputs"], "--format"),
+    (&["factor"], "--factor"),
+    (&["check"], "--check"),
+    (&["name"], "--name"),
+];
+
+/// The faults of a request as those of options.
+pub(super) fn refused(error: &PlanError) -> Failure {
+    let line = |(place, fault): &(crate::plan::Place, Fault)| {
+        let keys = place.path.steps().iter().filter_map(|s| match s {
+            Step::Key(key) => Some(key.as_str()),
+            Step::Index(_) => None,
+        });
+        let keys: Vec<&str> = keys.skip(1).collect();
+        let option = OPTIONS.iter().find(|(start, _)| keys.starts_with(start)).map_or("map", |(_, o)| o);
+        let remedy = match fault {
+            Fault::Image { io: true, .. } => None,
+            _ if keys == ["normal"] => Some("--resample brings both to the larger size".to_owned()),
+            other => other.remedy(),
+        };
+        let more = [fault.allowed(), remedy];
+        more.into_iter().flatten().fold(format!("{option}: {fault}"), |text, more| format!("{text}; {more}"))
+    };
+    let exit = error.faults.iter().map(|(_, fault)| match fault {
+        Fault::Image { io: true, .. } => Exit::Io,
+        Fault::Image { io: false, .. } => Exit::Input,
+        Fault::Map { .. } | Fault::Range { .. } | Fault::Count { .. } | Fault::Twice { .. } => Exit::Usage,
+        Fault::Name { .. } => Exit::Usage,
+        _ => Exit::Input,
+    });
+    let lines: Vec<String> = error.faults.iter().map(line).collect();
+    Failure::new(exit.max_by_key(|e| *e as u8).unwrap_or(Exit::Internal), lines.join("\nerror: "))
+}
