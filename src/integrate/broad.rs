@@ -6,8 +6,8 @@
 //! panel as if it were smooth. The azimuth is graded towards the far side, where the half vector of two grazing
 //! directions swings up to the normal within an angle of `mu_o`.
 
-use super::graded::{Graded, Order};
-use super::nodes::{BATCH, Nodes};
+use super::graded::{Graded, Order, Part};
+use super::nodes::Nodes;
 use std::f64::consts::PI;
 
 const AZIMUTH: Order = Order(1.0, 0.4);
@@ -33,8 +33,10 @@ pub fn visit(mu_o: f64, floor: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
             let mu_i = lo + (hi - lo) * s;
             let from_normal = (1.0 - hi) + (hi - lo) * rest;
             let sin_i = (from_normal * (1.0 + mu_i)).sqrt();
-            row(&mut nodes, &azimuth, mu_i, sin_i, (hi - lo) * weight);
-            visit(&nodes);
+            for part in azimuth.parts() {
+                row(&mut nodes, part, mu_i, sin_i, (hi - lo) * weight);
+                visit(&nodes);
+            }
         });
     }
 }
@@ -61,9 +63,9 @@ fn half_count(level: f64) -> i32 {
 }
 
 /// One cosine: the azimuth from the far side (pi) to the near one.
-fn row(nodes: &mut Nodes, azimuth: &Graded, mu_i: f64, sin_i: f64, width: f64) {
+fn row(nodes: &mut Nodes, azimuth: Part<'_>, mu_i: f64, sin_i: f64, width: f64) {
     let (mu_o, sin_o) = (nodes.mu_o, nodes.sin_o);
-    nodes.len = azimuth.len.min(BATCH);
+    nodes.len = azimuth.node.len();
     for j in 0..nodes.len {
         // pi - phi
         let from_far = PI * azimuth.node[j];

@@ -285,8 +285,10 @@ impl Ellipse {
         let peak_scale = 0.5 * width.min(near_normal).max(1e-9);
         nodes.panel = panel;
         crease::pieces(peak_end, peak_scale, &cuts, self.level, crease::peak_order(), &mut |rule| {
-            fill(nodes, row, rule, weight, [0.0, peak_end], false);
-            visit(nodes);
+            for part in rule.parts() {
+                fill(nodes, row, part, weight, [0.0, peak_end], false);
+                visit(nodes);
+            }
         });
         let near_end = row.above_horizon(end);
         if near_end < row.quarter {
@@ -297,8 +299,10 @@ impl Ellipse {
                 cut.0 = row.above_horizon(cut.0) - near_end;
             }
             let mut add = |rule: &Graded| {
-                fill(nodes, row, rule, weight, [near_end, row.quarter], true);
-                visit(nodes);
+                for part in rule.parts() {
+                    fill(nodes, row, part, weight, [near_end, row.quarter], true);
+                    visit(nodes);
+                }
             };
             if lobe.edge == Edge::Root && near_end <= 0.0 && lobe.crease.is_none() {
                 add(&Graded::root(PLAIN, self.level));

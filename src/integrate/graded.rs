@@ -7,44 +7,65 @@ use super::gauss;
 use super::nodes::BATCH;
 use crate::math::exp::exp;
 
-/// Order of a panel at `level`: `level (c0 + c1 L)` rounded, between 2 and [`BATCH`].
+/// Order of a panel at `level`: `level (c0 + c1 L)` rounded, at least 2.
 ///
 /// With `c0 >= 1` and levels that grow by 1.4 from 2 on, every order grows from level to level: a panel that did not
-/// grow would hide its error from the ladder.
+/// grow would hide its error from the ladder. For the same reason no order is too high: above that of the highest Gauss rule the panel
+/// is cut into equal parts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Order(pub f64, pub f64);
 
 impl Order {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [2, BATCH] first")]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped first")]
     fn at(self, level: f64, l: f64) -> usize {
-        (level * (self.0 + self.1 * l)).round().clamp(2.0, 128.0) as usize
+        (level * (self.0 + self.1 * l)).round().clamp(2.0, 4096.0) as usize
     }
 }
 
+/// Nodes and weights of so many points on (0, 1): one Gauss rule, or equal parts of one each.
+fn points(order: usize) -> impl Iterator<Item = (f64, f64)> {
+    let parts = order.div_ceil(gauss::MAX_ORDER);
+    let rule = gauss::rule(order.div_ceil(parts));
+    let (count, share) = (parts as f64, 1.0 / parts as f64);
+    let of_part = move |k: usize| {
+        let at = move |(x, w): (&f64, &f64)| ((k as f64 + x) / count, w * share);
+        rule.nodes.iter().zip(&rule.weights).map(at)
+    };
+    (0..parts).flat_map(of_part)
+}
+
 /// Nodes in (0, 1) graded towards 0 on the scale `eps`, and their weights.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Graded {
     /// Number of nodes.
     pub len: usize,
     /// Nodes, increasing.
-    pub node: [f64; BATCH],
+    pub node: Vec<f64>,
     /// Weights; they sum to 1.
-    pub weight: [f64; BATCH],
+    pub weight: Vec<f64>,
+}
+
+/// Some nodes of a rule and their weights, at most [`BATCH`].
+#[derive(Debug, Clone, Copy)]
+pub struct Part<'a> {
+    /// Nodes, increasing.
+    pub node: &'a [f64],
+    /// Weights.
+    pub weight: &'a [f64],
 }
 
 impl Graded {
     /// The rule of a panel of length 1 for the scale `eps > 0`.
     #[must_use]
     pub fn new(eps: f64, order: Order, level: f64) -> Graded {
-        let mut rule = Graded::empty();
+        let mut rule = Graded::default();
         rule.set(eps, order, level);
         rule
     }
 
-    /// A rule without nodes, to be [`set`](Graded::set).
-    #[must_use]
-    pub fn empty() -> Graded {
-        Graded { len: 0, node: [0.0; BATCH], weight: [0.0; BATCH] }
+    /// The rule in parts that fit a batch.
+    pub fn parts(&self) -> impl Iterator<Item = Part<'_>> {
+        self.node.chunks(BATCH).zip(self.weight.chunks(BATCH)).map(|(node, weight)| Part { node, weight })
     }
 
     /// Makes this the rule of another scale, order and level, in place.
@@ -57,7 +78,7 @@ impl Graded {
     /// Two of them that meet at a kink are as good as one rule without it.
     #[must_use]
     pub fn between(eps: f64, order: Order, level: f64, span: [f64; 2]) -> Graded {
-        let mut rule = Graded::empty();
+        let mut rule = Graded::default();
         rule.set_between(eps, order, level, span);
         rule
     }
@@ -67,27 +88,25 @@ impl Graded {
         let ratio = 1.0 / eps.max(1e-300);
         let start = if lo > 0.0 { libm::asinh(ratio * lo) } else { 0.0 };
         let l = libm::asinh(ratio * hi) - start;
-        let rule = gauss::rule(order.at(level, l));
-        let n = rule.nodes.len();
-        self.len = n;
-        let (nodes, weights) = (&rule.nodes[..n], &rule.weights[..n]);
-        let (node, weight) = (&mut self.node[..n], &mut self.weight[..n]);
         let scale = 1.0 / ratio;
-        if start + l < 1.0 {
-            // sinh y = (e^y - e^-y) / 2 would cancel here
-            for i in 0..n {
-                let (sinh, cosh) = near_zero(start + l * nodes[i]);
-                node[i] = sinh * scale;
-                weight[i] = cosh * (l * scale * weights[i]);
-            }
-        } else {
-            for i in 0..n {
-                let e = exp(start + l * nodes[i]);
+        self.node.clear();
+        self.weight.clear();
+        // sinh y = (e^y - e^-y) / 2 would cancel near 0
+        let small = start + l < 1.0;
+        for (x, w) in points(order.at(level, l)) {
+            let y = start + l * x;
+            let (node, weight) = if small {
+                let (sinh, cosh) = near_zero(y);
+                (sinh * scale, cosh * (l * scale * w))
+            } else {
+                let e = exp(y);
                 let inverse = 1.0 / e;
-                node[i] = 0.5 * (e - inverse) * scale;
-                weight[i] = 0.5 * (e + inverse) * (l * scale * weights[i]);
-            }
+                (0.5 * (e - inverse) * scale, 0.5 * (e + inverse) * (l * scale * w))
+            };
+            self.node.push(node);
+            self.weight.push(weight);
         }
+        self.len = self.node.len();
     }
 
     /// A rule from `span[0]`, where the integrand has a square root of the distance, to `span[1]`, on either side of it.
@@ -98,7 +117,7 @@ impl Graded {
     pub fn root_at(span: [f64; 2], eps: f64, order: Order, level: f64) -> Graded {
         let mut rule = Graded::new(eps, order, level);
         let length = span[1] - span[0];
-        for (x, w) in rule.node[..rule.len].iter_mut().zip(&mut rule.weight) {
+        for (x, w) in rule.node.iter_mut().zip(&mut rule.weight) {
             *w *= 2.0 * *x * length.abs();
             *x = span[0] + length * (*x * *x);
         }
@@ -108,13 +127,9 @@ impl Graded {
     /// The rule of a panel whose integrand holds the square root of the variable: `t = x^2`.
     #[must_use]
     pub fn root(order: Order, level: f64) -> Graded {
-        let rule = gauss::rule(order.at(level, 0.0));
-        let mut out = Graded { len: rule.nodes.len(), node: [0.0; BATCH], weight: [0.0; BATCH] };
-        for (i, (&x, &w)) in rule.nodes.iter().zip(&rule.weights).enumerate() {
-            out.node[i] = x * x;
-            out.weight[i] = 2.0 * x * w;
-        }
-        out
+        let (node, weight): (Vec<f64>, Vec<f64>) =
+            points(order.at(level, 0.0)).map(|(x, w)| (x * x, 2.0 * x * w)).unzip();
+        Graded { len: node.len(), node, weight }
     }
 }
 

@@ -22,7 +22,7 @@
 //! alpha are tiny).
 
 use super::ellipse::GRAZING;
-use super::graded::{Graded, Order};
+use super::graded::{Graded, Order, Part};
 use super::nodes::{BATCH, Nodes};
 use std::cell::Cell;
 use std::f64::consts::FRAC_PI_2;
@@ -85,7 +85,7 @@ struct Workspace {
 
 impl Default for Workspace {
     fn default() -> Workspace {
-        let empty = Graded::empty;
+        let empty = Graded::default;
         Workspace {
             near: Nodes::new(1.0.into()),
             far: Nodes::new(1.0.into()),
@@ -139,13 +139,17 @@ pub fn visit(
             let row = Row::relative(if front { sine } else { -sine }, s, mu);
             // 2 for the mirror half of the azimuth.
             let width = 2.0 * FRAC_PI_2 * azimuth.weight[j];
-            flush(near, peak.len, visit);
-            fill_peak(near, &row, peak, width, row.quarter.min(end));
+            for part in peak.parts() {
+                flush(near, part.node.len(), visit);
+                fill_peak(near, &row, part, width, row.quarter.min(end));
+            }
             // distance from the horizon at which D ends; beyond the half way point nothing is left
             let near_end = row.above_horizon(end);
             if near_end < row.quarter {
-                flush(far, horizon.len, visit);
-                fill_horizon(far, &row, horizon, width, [near_end, row.quarter]);
+                for part in horizon.parts() {
+                    flush(far, part.node.len(), visit);
+                    fill_horizon(far, &row, part, width, [near_end, row.quarter]);
+                }
             }
         }
         flush(near, BATCH, visit);
@@ -170,15 +174,16 @@ pub(super) fn half_tangent(tan: f64) -> f64 {
 /// Appends the nodes of one row below `t_max / 2`; `y = tan(t / 2)` runs over (0, end).
 ///
 /// `mu_i` is far from 0 relative to its terms here (at least `mu / 2`), so it is formed directly.
-fn fill_peak(nodes: &mut Nodes, row: &Row, graded: &Graded, width: f64, end: f64) {
+fn fill_peak(nodes: &mut Nodes, row: &Row, part: Part<'_>, width: f64, end: f64) {
     let (a, mu) = (row.along, nodes.mu_o);
-    let len = graded.len;
+    let Part { node, weight } = part;
+    let len = node.len();
     let at = nodes.len..nodes.len + len;
     nodes.len += len;
     nodes.cos_phi[at.clone()].fill(row.cos_phi);
     nodes.sin_phi[at.clone()].fill(row.sin_phi);
     let scale = 8.0 * end * width;
-    let (node, weight) = (&graded.node[..len], &graded.weight[..len]);
+    let weight = &weight[..len];
     let (cos_h, sin_h) = (&mut nodes.cos_h[at.clone()], &mut nodes.sin_h[at.clone()]);
     let (mu_i, cos_d) = (&mut nodes.mu_i[at.clone()], &mut nodes.cos_d[at.clone()]);
     let out = &mut nodes.weight[at];
@@ -198,16 +203,17 @@ fn fill_peak(nodes: &mut Nodes, row: &Row, graded: &Graded, width: f64, end: f64
 }
 
 /// Appends the nodes of one row above `t_max / 2`; `u = tan((t_max - t) / 2)` runs over `span`.
-fn fill_horizon(nodes: &mut Nodes, row: &Row, graded: &Graded, width: f64, span: [f64; 2]) {
+fn fill_horizon(nodes: &mut Nodes, row: &Row, part: Part<'_>, width: f64, span: [f64; 2]) {
     let (half, rest, mu) = (row.half, row.rest, nodes.mu_o);
     let length = span[1] - span[0];
-    let len = graded.len;
+    let Part { node, weight } = part;
+    let len = node.len();
     let at = nodes.len..nodes.len + len;
     nodes.len += len;
     nodes.cos_phi[at.clone()].fill(row.cos_phi);
     nodes.sin_phi[at.clone()].fill(row.sin_phi);
     let scale = 8.0 * length * width;
-    let (node, weight) = (&graded.node[..len], &graded.weight[..len]);
+    let weight = &weight[..len];
     let (cos_h, sin_h) = (&mut nodes.cos_h[at.clone()], &mut nodes.sin_h[at.clone()]);
     let (mu_i, cos_d) = (&mut nodes.mu_i[at.clone()], &mut nodes.cos_d[at.clone()]);
     let out = &mut nodes.weight[at];
@@ -236,15 +242,15 @@ fn fill_horizon(nodes: &mut Nodes, row: &Row, graded: &Graded, width: f64, span:
 pub(super) fn fill(
     nodes: &mut Nodes,
     row: &Row,
-    graded: &Graded,
+    part: Part<'_>,
     width: f64,
     span: [f64; 2],
     from_horizon: bool,
 ) {
     nodes.len = 0;
     if from_horizon {
-        fill_horizon(nodes, row, graded, width, span);
+        fill_horizon(nodes, row, part, width, span);
     } else {
-        fill_peak(nodes, row, graded, width, span[1]);
+        fill_peak(nodes, row, part, width, span[1]);
     }
 }
