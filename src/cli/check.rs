@@ -21,7 +21,7 @@ pub struct Args {
     /// Another bound for a rule (`list checks`); `off` leaves it out.
     #[arg(long, value_name = "RULE=BOUND")]
     rule: Vec<String>,
-    /// Masking of the GGX lobes: that of the tables (correlated), or that of glTF's appendix (separable).
+    /// Masking of the GGX lobes: that of the tables and of glTF's appendix (correlated), or that of the appendix before 2026 (separable).
     #[arg(long, value_name = "MASKING", default_value = "correlated", value_parser = ["correlated", "separable"])]
     masking: String,
     /// End with 4 where a rule is broken or a material could not be judged.
@@ -73,9 +73,7 @@ fn rules(changes: &[String]) -> Result<Vec<(&'static materials::Rule, f64)>, Fai
             change.split_once('=').ok_or_else(|| Failure::usage(format!("{change}: it is RULE=BOUND")))?;
         let Some(place) = rules.iter().position(|(r, _)| r.id == id) else {
             let ids = RULES.iter().map(|r| r.id);
-            let hint = crate::math::nearest::hint(id, ids.clone());
-            let all = ids.collect::<Vec<_>>().join(", ");
-            return Err(Failure::usage(format!("no rule `{id}`; there is {all}{hint}")));
+            return Err(Failure::usage(format!("no rule `{id}`{}", crate::math::nearest::offer(id, ids))));
         };
         if bound == "off" {
             rules.remove(place);

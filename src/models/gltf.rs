@@ -5,7 +5,7 @@
 
 use super::albedo_curve::AlbedoCurve;
 use super::lobes::{Part, Sum, cosine_pdf, cosine_sample};
-use super::microfacet::Ggx;
+use super::microfacet::{Ggx, MASKING, Masking, masking};
 use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity, Sample, charlie};
 use crate::cite;
 use crate::integrate::{Chart, ellipse::FacetLobe};
@@ -22,7 +22,7 @@ pub static INFO: ModelInfo = ModelInfo {
     title: "glTF 2.0 material: metallic-roughness with sheen and clear coat",
     formula: "f = (1 - c F_c(mu_o)) (s f_sheen + (1 - s max(E(mu_o), E(mu_i))) f_base) + c F_c(mu_o) f_coat, f_base = (1 - m)(lerp(rho / pi, DV, 0.04 + 0.96 w)) + m (rho + (1 - rho) w) DV, w = (1 - wo.wh)^5",
     sources: &[
-        (cite::GLTF_2, "Appendix B.2 and B.3 (f_base, D, V)"),
+        (cite::GLTF_2, "Appendix B.2 and B.3 (f_base, D, V; height-correlated masking since January 2026)"),
         (cite::KHR_SHEEN, "sheen_brdf and the albedo scaling"),
         (cite::KHR_CLEARCOAT, "the layering by F_c"),
     ],
@@ -58,19 +58,39 @@ pub static INFO: ModelInfo = ModelInfo {
             [0.01, 1.0],
             Preset::Value(0.1),
         ),
+        MASKING,
     ],
     laws: Laws { reciprocal: false, passive: false, isotropic: true },
     notes: "Not reciprocal with a coat, which is weighed by the view cosine alone. Not passive: the diffuse part is weighed by \
         1 - F(wo.wh) and the specular one by F(wo.wh), so a white smooth dielectric reflects nearly twice at grazing. Masking is \
-        separable, as in the appendix. E of the sheen is that of Charlie.",
+        height-correlated, as in the appendix since January 2026; `masking = \"separable\"` is the text before. E of the sheen is that of Charlie.",
     also: &[],
     known: &[
         Known {
             what: Quantity::Albedo(0.5),
-            params: &[("base_color", "1"), ("metallic", "1"), ("roughness", "1")],
+            params: &[
+                ("base_color", "1"),
+                ("metallic", "1"),
+                ("roughness", "1"),
+                ("masking", "\"separable\""),
+            ],
             value: 0.409_137_092_586_739_6,
             relative: 1e-7,
             source: "closed form: a white metal is separable GGX at alpha = 1, E(mu) = 2 (1 - ln 2) / (1 + mu)",
+        },
+        Known {
+            what: Quantity::Albedo(0.5),
+            params: &[("base_color", "1"), ("metallic", "1"), ("roughness", "1")],
+            value: 0.450_693_855_665_945_1,
+            relative: 1e-7,
+            source: "closed form: a white metal is correlated GGX at alpha = 1, E(mu) = 1 - mu ln((1 + mu) / mu)",
+        },
+        Known {
+            what: Quantity::Albedo(0.1),
+            params: &[("base_color", "1"), ("metallic", "1"), ("roughness", "1")],
+            value: 0.760_210_472_720_163,
+            relative: 1e-7,
+            source: "closed form: E(mu) = 1 - mu ln((1 + mu) / mu)",
         },
         Known {
             what: Quantity::Value([0.0, 0.0, 0.0, 0.0]),
@@ -105,6 +125,7 @@ const DIELECTRIC: f64 = 0.04;
 struct Material {
     base_color: f64,
     metallic: f64,
+    masking: Masking,
     base: Ggx,
     sheen: f64,
     sheen_roughness: f64,
@@ -138,6 +159,7 @@ fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     let material = Arc::new(Material {
         base_color: params.number("base_color")?,
         metallic: params.number("metallic")?,
+        masking: masking(params)?,
         base: Ggx::isotropic(square("roughness")?),
         sheen,
         sheen_roughness,
@@ -179,7 +201,13 @@ impl Material {
 
     fn value(&self, kind: Kind, wo: DVec3, wi: DVec3) -> f64 {
         let Some(h) = frame::half_vector(wo, wi) else { return 0.0 };
-        let facets = |ndf: &Ggx| ndf.d(h.wh) * ndf.visibility_separable(wo, wi);
+        let facets = |ndf: &Ggx| {
+            ndf.d(h.wh)
+                * match self.masking {
+                    Masking::Separable => ndf.visibility_separable(wo, wi),
+                    Masking::Correlated => ndf.visibility(wo, wi),
+                }
+        };
         let (coated, w) = (self.coated(wo.z), weight(h.cos_d));
         let dielectric = DIELECTRIC + (1.0 - DIELECTRIC) * w;
         match kind {

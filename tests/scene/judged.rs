@@ -39,6 +39,7 @@ fn model(texel: &Texel) -> f64 {
     ] {
         request.params.insert(id.to_owned(), json!(value));
     }
+    request.params.insert("masking".to_owned(), json!("separable"));
     let bound = request.bind().unwrap();
     let grid = &bound.spec.grid;
     let at = |i: usize| bound.baker.texel(grid.texel(i).values(), 1e-5).unwrap().value[0];

@@ -186,11 +186,12 @@ pub(crate) fn gltf(draw: &Draw) -> (f64, f64) {
     let coated = number("clearcoat") * Fresnel::Schlick { f0: 0.04, f90: 1.0 }.at(mu);
     let f0 = (1.0 - metallic) * 0.04 + metallic * rho;
     let factor = Fresnel::Schlick { f0, f90: 1.0 };
-    let base = lobe::microfacet("ggx", [square("roughness"); 2], 2.0, Masking::Separable, (factor, vec![]));
+    let masking =
+        if p.choice("masking").unwrap() == "separable" { Masking::Separable } else { Masking::Correlated };
+    let base = lobe::microfacet("ggx", [square("roughness"); 2], 2.0, masking, (factor, vec![]));
     let base = base.weighted(&below, if curve.is_some() { vec![mu] } else { vec![] });
     let one = Fresnel::Schlick { f0: 1.0, f90: 1.0 };
-    let coat =
-        lobe::microfacet("ggx", [square("clearcoat_roughness"); 2], 2.0, Masking::Separable, (one, vec![]));
+    let coat = lobe::microfacet("ggx", [square("clearcoat_roughness"); 2], 2.0, masking, (one, vec![]));
     let specular = two_settings(|s, t| base.integrate(mu, 0.0, s, t));
     let coat = two_settings(|s, t| coat.integrate(mu, 0.0, s, t));
     let sin = ((1.0 - mu) * (1.0 + mu)).sqrt();
