@@ -141,6 +141,32 @@ impl Expression {
         }
     }
 
+    /// Is the name in it?
+    #[must_use]
+    pub fn uses(&self, name: &str) -> bool {
+        match self {
+            Name(own) => own == name,
+            Number(_) => false,
+            Infix(a, _, b) => a.uses(name) || b.uses(name),
+            Expression::Call(_, arguments) => arguments.iter().any(|a| a.uses(name)),
+        }
+    }
+
+    /// The same without arithmetic that changes nothing: sums with 0, products with 0 and 1, quotients by 1, `c - (c - x)`. Numbers that
+    /// are 0 in 32 bits are 0.
+    #[must_use]
+    #[allow(clippy::cast_possible_truncation, reason = "the program computes in f32")]
+    pub fn simplified(self) -> Expression {
+        match self {
+            Number(v) if (v as f32).abs() <= 0.0 => Number(0.0),
+            Infix(a, operator, b) => plain(a.simplified(), operator, b.simplified()),
+            Expression::Call(function, arguments) => {
+                Expression::Call(function, arguments.into_iter().map(Expression::simplified).collect())
+            }
+            other => other,
+        }
+    }
+
     pub(super) fn is(&self, value: f64) -> bool {
         matches!(self, Number(v) if (v - value).abs() == 0.0)
     }
@@ -162,5 +188,34 @@ impl Expression {
                 notation.call(&Call { function: *function, arguments: &arguments, double })
             }
         }
+    }
+}
+
+/// A sum, difference, product or quotient of simplified parts.
+fn plain(a: Expression, operator: char, b: Expression) -> Expression {
+    match (operator, a, b) {
+        ('+', zero, other) | ('+' | '-', other, zero) if zero.is(0.0) => other,
+        ('*', one, other) | ('*' | '/', other, one) if one.is(1.0) => other,
+        ('*', zero, _) | ('*', _, zero) | ('/', zero, _) if zero.is(0.0) => Number(0.0),
+        ('-', Number(c), Infix(d, '-', x)) if d.is(c) => *x,
+        (operator, a, b) => a.infix(operator, b),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arithmetic_that_changes_nothing_is_left_out() {
+        let (x, n) = (|| Expression::name("x"), Number);
+        let sum = |a: Expression, b| a.infix('+', b);
+        let dead = sum(n(1e-60).infix('*', x()), sum(x(), n(0.0)).infix('*', n(1.0)));
+        assert_eq!(dead.simplified(), x());
+        assert_eq!(n(1.0).infix('-', n(1.0).infix('-', x())).simplified(), x());
+        assert_eq!(x().infix('/', n(1.0)).infix('-', n(0.0)).simplified(), x());
+        let kept = n(2.0).infix('-', n(1.0).infix('-', x()));
+        assert_eq!(kept.clone().simplified(), kept);
+        assert_eq!(n(0.0).infix('-', x()).simplified(), n(0.0).infix('-', x()));
     }
 }

@@ -69,6 +69,21 @@ impl Formula {
         (self.results.iter().map(|r| value(r, &known)).collect(), least)
     }
 
+    /// The same without arithmetic that changes nothing and without steps that nothing uses.
+    pub(super) fn simplified(self) -> Formula {
+        let Formula { name, arguments, steps, results, denominators } = self;
+        let results: Vec<Expression> = results.into_iter().map(Expression::simplified).collect();
+        let mut kept: Vec<(String, Expression)> = Vec::new();
+        for (step, e) in steps.into_iter().rev() {
+            let used = results.iter().chain(kept.iter().map(|k| &k.1)).any(|e| e.uses(&step));
+            if used || denominators.iter().any(|d| d.0 == step) {
+                kept.push((step, e.simplified()));
+            }
+        }
+        kept.reverse();
+        Formula { name, arguments, steps: kept, results, denominators }
+    }
+
     pub(super) fn operations(&self) -> usize {
         self.steps.iter().map(|s| &s.1).chain(&self.results).map(Expression::operations).sum()
     }

@@ -5,7 +5,8 @@
 //!
 //! The fits are of least largest error ([`math::rational`](crate::math::rational)), where errors over mu 0.05, roughness
 //! 0.09 and above ("practical") count four times. Errors are then measured in f32, operation by operation as the code computes,
-//! at the points of the fit, those between them and the edges. Results are clamped to the range of their channel.
+//! at the points of the fit, and between them along either variable and both, the borders of the domain among them. Results are clamped to
+//! the range of their channel, or of the values where these leave it: a model need not be passive.
 
 mod formula;
 mod split;
@@ -26,6 +27,8 @@ const PRACTICAL_WEIGHT: f64 = 4.0;
 const LINES: usize = 65;
 /// Steps of a fit.
 const STEPS: usize = 150;
+/// Shifts of the points between those of a fit, in parts of their distance.
+const BETWEEN: [[f64; 2]; 3] = [[0.5, 0.5], [0.5, 0.0], [0.0, 0.5]];
 /// Integration error of the truth.
 const TOLERANCE: f64 = 1e-6;
 
@@ -143,6 +146,7 @@ impl Fit {
         (results, ranges): (Vec<String>, Vec<[f64; 2]>),
         samples: &[Sample],
     ) -> Option<Fit> {
+        let formula = formula.simplified();
         let mut fit = Fit {
             title,
             form,
@@ -202,6 +206,11 @@ impl Fit {
 #[allow(clippy::cast_possible_truncation, reason = "the code computes in f32")]
 fn single(v: &[f64]) -> Vec<f32> {
     v.iter().map(|x| *x as f32).collect()
+}
+
+/// A range, widened to the values that leave it.
+fn reached(range: [f64; 2], values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold(range, |[lo, hi], v| [lo.min(v), hi.max(v)])
 }
 
 /// None if there is no such sample.

@@ -14,7 +14,7 @@
 //! dropped, one by one, without which GGX was fitted best.
 
 use super::formula::{Formula, name, number, ratio};
-use super::{Fit, FitError, LINES, PRACTICAL_WEIGHT, STEPS, Sample, TOLERANCE};
+use super::{BETWEEN, Fit, FitError, LINES, PRACTICAL_WEIGHT, STEPS, Sample, TOLERANCE, reached};
 use crate::cancel::Cancel;
 use crate::grid::Axis;
 use crate::grid::expression::Expression;
@@ -105,11 +105,12 @@ pub fn split_sum_until(cancel: &Cancel, bound: &Bound, degree: usize) -> Result<
         got: format!("degree {degree}"),
         why: "there are degrees 1 to 5",
     })?;
-    let nodes = nodes(cancel, bound, axes, decode, 0.0)?;
+    let nodes = nodes(cancel, bound, axes, decode, [0.0; 2])?;
     let pole = || FitError::Pole { degree };
     // every other node: errors are measured at all of them
     let fitted: Vec<&Node> = nodes.iter().step_by(2).collect();
-    let albedo = Albedo::new(cancel, &fitted, terms(parts.e));
+    let top = reached([0.0, 1.0], nodes.iter().map(|n| n.e))[1];
+    let albedo = Albedo::new(cancel, &fitted, terms(parts.e), top);
     cancel.check()?;
     let albedo = albedo.ok_or_else(pole)?;
     let factor = albedo.factor(cancel, &fitted, terms(parts.k), parts.power);
@@ -123,9 +124,11 @@ pub fn split_sum_until(cancel: &Cancel, bound: &Bound, degree: usize) -> Result<
     ];
     let results = ["scale", "bias", "E = scale + bias"].map(str::to_owned).to_vec();
     let mut samples: Vec<Sample> = nodes.iter().map(Node::sample).collect();
-    samples.extend(self::nodes(cancel, bound, axes, decode, 0.5)?.iter().map(Node::sample));
+    for offset in BETWEEN {
+        samples.extend(self::nodes(cancel, bound, axes, decode, offset)?.iter().map(Node::sample));
+    }
     let formula = albedo.formula(&k_terms, &k, parts.power);
-    Fit::measured(formula, titles, (results, vec![[0.0, 1.0]; 3]), &samples).ok_or_else(pole)
+    Fit::measured(formula, titles, (results, vec![[0.0, top]; 3]), &samples).ok_or_else(pole)
 }
 
 /// The constant term of Q is always 1.
@@ -143,17 +146,19 @@ fn nodes(
     bound: &Bound,
     [mu_axis, alpha_axis]: [usize; 2],
     decode: Decode,
-    offset: f64,
+    offset: [f64; 2],
 ) -> Result<Vec<Node>, FitError> {
-    let lines = if offset > 0.0 { LINES - 1 } else { LINES };
-    let place = |i: usize| (i as f64 + offset) / (LINES - 1) as f64;
+    let lines = offset.map(|shift| LINES - usize::from(shift > 0.0));
+    let area = lines[0] * lines[1];
+    let place = |i: usize, shift: f64| (i as f64 + shift) / (LINES - 1) as f64;
     let axes = bound.spec.grid.axes();
     let [lo, hi] = roughness(&axes[alpha_axis]);
     let one = |n: usize| {
         cancel.check()?;
-        let (x, roughness) = (place(n % lines), lo + (hi - lo) * place(n / lines % lines));
+        let x = place(n % lines[0], offset[0]);
+        let roughness = lo + (hi - lo) * place(n / lines[0] % lines[1], offset[1]);
         let alpha = roughness * roughness;
-        let mu = if n < lines * lines && alpha > 0.0 { x * x * alpha / (1.0 + alpha - x * x) } else { x };
+        let mu = if n < area && alpha > 0.0 { x * x * alpha / (1.0 + alpha - x * x) } else { x };
         // mu = alpha = 0 is not one value
         if mu + alpha <= 0.0 {
             return Ok(None);
@@ -170,7 +175,7 @@ fn nodes(
         let [e, bias] = decode(&value, mu);
         Ok(Some(Node { mu, alpha, e, bias, practical: mu >= PRACTICAL_MU && alpha >= PRACTICAL_ALPHA }))
     };
-    let all: Result<Vec<Option<Node>>, FitError> = (0..2 * lines * lines).into_par_iter().map(one).collect();
+    let all: Result<Vec<Option<Node>>, FitError> = (0..2 * area).into_par_iter().map(one).collect();
     Ok(all?.into_iter().flatten().collect())
 }
 
@@ -204,10 +209,12 @@ struct Albedo {
     fitted: Fitted,
     /// True for `1 - v (1 - v) P / Q`, false for `P / Q`.
     loss: bool,
+    /// What E is held to at most: 1, or more of a model that is not passive.
+    top: f64,
 }
 
 impl Albedo {
-    fn new(cancel: &Cancel, nodes: &[&Node], terms: Terms) -> Option<Albedo> {
+    fn new(cancel: &Cancel, nodes: &[&Node], terms: Terms, top: f64) -> Option<Albedo> {
         let fit = |loss: bool| {
             let point = |n: &Node| {
                 let (base, factor) = if loss { (1.0, -n.v() * (1.0 - n.v())) } else { (0.0, 1.0) };
@@ -215,7 +222,7 @@ impl Albedo {
             };
             let points: Vec<Point> = nodes.iter().copied().map(point).collect();
             let fitted = rational::fit(&points, &terms, 1, STEPS, cancel)?;
-            Some(Albedo { terms: terms.clone(), fitted, loss })
+            Some(Albedo { terms: terms.clone(), fitted, loss, top })
         };
         let both = [true, false].into_iter().filter_map(fit);
         both.min_by(|a, b| a.fitted.largest.total_cmp(&b.fitted.largest))
@@ -232,7 +239,7 @@ impl Albedo {
         let point = |n: &Node| {
             let at = [n.v(), n.alpha];
             let ratio = self.fitted.ratio(&self.terms, at);
-            let e = if self.loss { 1.0 - at[0] * (1.0 - at[0]) * ratio } else { ratio }.clamp(0.0, 1.0);
+            let e = if self.loss { 1.0 - at[0] * (1.0 - at[0]) * ratio } else { ratio }.clamp(0.0, self.top);
             let half = 0.5 * (e - n.e);
             Point {
                 at: [n.mu, n.alpha],
@@ -262,7 +269,7 @@ impl Albedo {
             ("v", name("mu").over(name("mu").plus(name("alpha")).at_least(1e-30))),
             ("e_p", e_ratio.above),
             ("e_q", e_ratio.below),
-            ("e", e.at_least(0.0).at_most(1.0)),
+            ("e", e.at_least(0.0).at_most(self.top)),
             ("k_p", k_ratio.above),
             ("k_q", k_ratio.below),
             ("k", quotient(name("k_p"), "k_q")),

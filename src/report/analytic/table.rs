@@ -1,7 +1,7 @@
 //! Any table of one or two axes: each channel by itself, in the axis coordinates in [0, 1] (warped, as a reader computes them).
 
 use super::formula::{Formula, name, ratio};
-use super::{Fit, FitError, LINES, PRACTICAL_WEIGHT, STEPS, Sample, TOLERANCE};
+use super::{BETWEEN, Fit, FitError, LINES, PRACTICAL_WEIGHT, STEPS, Sample, TOLERANCE, reached};
 use crate::cancel::Cancel;
 use crate::encode::code::coordinates;
 use crate::grid::expression::Expression;
@@ -73,14 +73,16 @@ pub fn table_until(cancel: &Cancel, bound: &Bound, form: Form, degree: usize) ->
         let why = "polynomials have degrees 1 to 8, rational functions 1 to 5";
         return Err(FitError::Table { got: format!("degree {degree}"), why });
     }
-    let nodes = nodes(cancel, bound, 0.0)?;
+    let nodes = nodes(cancel, bound, [0.0; 2])?;
     let channels: Vec<&ChannelInfo> = spec.layout.channels.iter().collect();
     let terms = Terms::of_degree(degree, axes.len(), form == Form::Rational);
     let fitted: Option<Vec<Fitted>> =
         (0..channels.len()).into_par_iter().map(|c| channel(cancel, &nodes, c, &terms)).collect();
     cancel.check()?;
     let pole = || FitError::Pole { degree };
-    let formula = formula(bound, &terms, &fitted.ok_or_else(pole)?)?;
+    let range = |(c, info): (usize, &&ChannelInfo)| reached(info.range, nodes.iter().map(|n| n.value[c]));
+    let ranges: Vec<[f64; 2]> = channels.iter().enumerate().map(range).collect();
+    let formula = formula(bound, &terms, &fitted.ok_or_else(pole)?, &ranges)?;
     let model = spec.model.as_ref().map_or_else(String::new, |(info, _)| format!(" of {}", info.id));
     let domain = |a: &crate::grid::Axis| format!("{} in [{}, {}]", a.quantity.id, a.domain[0], a.domain[1]);
     let titles = [
@@ -88,9 +90,10 @@ pub fn table_until(cancel: &Cancel, bound: &Bound, form: Form, degree: usize) ->
         format!("{}, degree {degree}", form.word()),
     ];
     let results = channels.iter().map(|c| c.id.to_owned()).collect();
-    let ranges = channels.iter().map(|c| c.range).collect();
     let mut all = nodes;
-    all.extend(self::nodes(cancel, bound, 0.5)?);
+    for offset in BETWEEN.into_iter().take(if axes.len() > 1 { 3 } else { 1 }) {
+        all.extend(self::nodes(cancel, bound, offset)?);
+    }
     let sample = |n: Node| Sample {
         arguments: axes.iter().zip(n.place.values()).map(|(a, v)| a.quantity.from_base(*v)).collect(),
         want: n.value,
@@ -100,19 +103,18 @@ pub fn table_until(cancel: &Cancel, bound: &Bound, form: Form, degree: usize) ->
     Fit::measured(formula, titles, (results, ranges), &samples).ok_or_else(pole)
 }
 
-fn nodes(cancel: &Cancel, bound: &Bound, offset: f64) -> Result<Vec<Node>, FitError> {
+/// Values on a grid of coordinates, shifted by a part of their distance.
+fn nodes(cancel: &Cancel, bound: &Bound, offset: [f64; 2]) -> Result<Vec<Node>, FitError> {
     let grid = &bound.spec.grid;
     let channels = bound.spec.layout.channels.len();
     let two = grid.axes().len() > 1;
-    let lines = match (two, offset > 0.0) {
-        (true, middle) => LINES - usize::from(middle),
-        (false, middle) => 8 * (LINES - 1) + 1 - usize::from(middle),
-    };
-    let last = (if two { LINES - 1 } else { 8 * (LINES - 1) }) as f64;
+    let last = if two { LINES - 1 } else { 8 * (LINES - 1) };
+    let lines = offset.map(|shift| last + usize::from(shift <= 0.0));
     let cuts = has_practical(grid);
     let one = |n: usize| {
         cancel.check()?;
-        let x = [n % lines, n / lines].map(|i| (i as f64 + offset) / last);
+        let coordinate = |i: usize, shift: f64| (i as f64 + shift) / last as f64;
+        let x = [coordinate(n % lines[0], offset[0]), coordinate(n / lines[0], offset[1])];
         let place = grid.at_coordinates(&x);
         let texel = bound.baker.texel(place.values(), TOLERANCE);
         let fault = |error| FitError::Texel {
@@ -124,7 +126,7 @@ fn nodes(cancel: &Cancel, bound: &Bound, offset: f64) -> Result<Vec<Node>, FitEr
         let practical = cuts && in_practical_domain(grid, &place);
         Ok(Node { x: if two { x } else { [x[0], 0.0] }, place, value: value[..channels].to_vec(), practical })
     };
-    let count = if two { lines * lines } else { lines };
+    let count = if two { lines[0] * lines[1] } else { lines[0] };
     (0..count).into_par_iter().map(one).collect()
 }
 
@@ -141,7 +143,12 @@ fn channel(cancel: &Cancel, nodes: &[Node], c: usize, terms: &Terms) -> Option<F
     rational::fit(&points, terms, 1, STEPS, cancel)
 }
 
-fn formula(bound: &Bound, terms: &Terms, fitted: &[Fitted]) -> Result<Formula, FitError> {
+fn formula(
+    bound: &Bound,
+    terms: &Terms,
+    fitted: &[Fitted],
+    ranges: &[[f64; 2]],
+) -> Result<Formula, FitError> {
     let spec = &bound.spec;
     let axes = spec.grid.axes();
     let mut steps: Vec<(String, Expression)> = Vec::new();
@@ -150,7 +157,7 @@ fn formula(bound: &Bound, terms: &Terms, fitted: &[Fitted]) -> Result<Formula, F
     }
     let mut denominators = Vec::new();
     let mut results = Vec::new();
-    for (c, (fitted, info)) in fitted.iter().zip(spec.layout.channels.iter()).enumerate() {
+    for (c, (fitted, range)) in fitted.iter().zip(ranges).enumerate() {
         let ratio = ratio(terms, fitted, "x0", "x1");
         let mut result = ratio.above;
         if !terms.below.is_empty() {
@@ -158,7 +165,7 @@ fn formula(bound: &Bound, terms: &Terms, fitted: &[Fitted]) -> Result<Formula, F
             denominators.push((format!("q{c}"), ratio.unit));
             result = result.over(name(&format!("q{c}")));
         }
-        let [lo, hi] = info.range;
+        let [lo, hi] = *range;
         results.push(match (lo.is_finite(), hi.is_finite()) {
             (true, true) => result.at_least(lo).at_most(hi),
             (true, false) => result.at_least(lo),
