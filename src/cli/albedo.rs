@@ -134,7 +134,6 @@ pub(super) fn build(
 
 /// The message for a model that does not exist.
 pub(super) fn unknown_model(name: &str) -> Failure {
-    let ids = || models::MODELS.iter().map(|m| m.id);
-    let hint = crate::math::nearest::hint(name, ids());
-    Failure::input(format!("no model `{name}`; there is {}{hint}", ids().collect::<Vec<_>>().join(", ")))
+    let ids = models::MODELS.iter().map(|m| m.id);
+    Failure::input(format!("no model `{name}`{}", crate::math::nearest::offer(name, ids)))
 }

@@ -157,10 +157,9 @@ pub(super) fn plan(name: &str) -> Result<Plan, Failure> {
             return recipe::parse(preset.source, &format!("presets/{name}.toml")).map_err(Failure::input);
         }
         let ids: Vec<&str> = recipe::PRESETS.iter().map(|p| p.id).collect();
-        let hint = crate::math::nearest::hint(name, ids.iter().copied());
+        let offer = crate::math::nearest::offer(name, ids);
         return Err(Failure::input(format!(
-            "no preset `{name}`; there is {}{hint} A recipe file is given by its path, such as ./{name}.toml",
-            ids.join(", ")
+            "no preset `{name}`{offer}\nA recipe file is given by its path, such as ./{name}.toml"
         )));
     }
     recipe::load(std::path::Path::new(name)).map_err(|error| match error {

@@ -9,8 +9,7 @@ use crate::recipe::{self, ENGINES, Engine};
 pub(super) fn plan(id: &str) -> Result<(&'static Engine, Plan), Failure> {
     let Some(engine) = recipe::engine(id) else {
         let ids: Vec<&str> = ENGINES.iter().map(|e| e.id).collect();
-        let hint = crate::math::nearest::hint(id, ids.iter().copied());
-        return Err(Failure::input(format!("no engine `{id}`; there is {}{hint}", ids.join(", "))));
+        return Err(Failure::input(format!("no engine `{id}`{}", crate::math::nearest::offer(id, ids))));
     };
     Ok((engine, engine.plan().map_err(Failure::input)?))
 }

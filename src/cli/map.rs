@@ -7,7 +7,7 @@ use crate::encode::mips::containers;
 use crate::functions::conversion::{By, CONVERSIONS};
 use crate::maps::{Centre, Convention, Effort, Objective, RULES, Shape, rules};
 use crate::math::figures::short;
-use crate::math::nearest::hint;
+use crate::math::nearest::offer;
 use crate::picture::{Space, Wrap};
 use crate::pipeline::map::{MapError, MapOutcome, run as filter};
 use crate::plan::Fault;
@@ -173,10 +173,9 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
 }
 
 fn request(args: &Args) -> Result<MapRequest, Failure> {
-    let ids: Vec<&str> = RULES.iter().map(|r| r.id).collect();
     let rule = rules::rule(&args.rule).ok_or_else(|| {
-        let hint = hint(&args.rule, ids.iter().copied());
-        Failure::usage(format!("--rule {}: no such rule; there is {}{hint}", args.rule, ids.join(", ")))
+        let offer = offer(&args.rule, RULES.iter().map(|r| r.id));
+        Failure::usage(format!("--rule {}: no such rule{offer}", args.rule))
     })?;
     if !args.normal_scale.is_finite() || args.normal_scale < 0.0 {
         return Err(Failure::usage(format!("--normal-scale {} must not be negative", args.normal_scale)));

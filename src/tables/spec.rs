@@ -57,7 +57,7 @@ pub struct Request {
 #[non_exhaustive]
 pub enum BindError {
     /// No such table kind, layout, channel or model.
-    #[error("no {what} `{got}`; there is {allowed}{}", .suggestion.as_deref().map(|s| format!("; did you mean `{s}`?")).unwrap_or_default())]
+    #[error("no {what} `{got}`; {}", .suggestion.as_deref().map_or_else(|| format!("there is {allowed}"), |s| format!("did you mean `{s}`?")))]
     Unknown {
         /// `table`, `layout`, `channel` or `model`.
         what: &'static str,
