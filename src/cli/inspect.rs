@@ -2,16 +2,27 @@
 
 use super::{Exit, Failure, output};
 use crate::cancel::Cancel;
-use crate::encode::read;
-use crate::report;
+use crate::encode::raw::Raw;
+use crate::encode::{Encoder, beside, read};
+use crate::report::{self, recognise};
 use std::path::PathBuf;
 
 /// Arguments of `inspect`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Picture files (EXR, KTX2, DDS, PNG, HDR, NPY), from this program or any other.
+    /// Picture files (EXR, KTX2, DDS, PNG, HDR, NPY, MERL, bare numbers), from this program or any other.
     #[arg(required = true)]
     files: Vec<PathBuf>,
+    /// How the numbers of bare files (.bin) lie, such as 128x64x2:half; without it the manifest beside them tells.
+    #[arg(long, value_name = "WxHxC:STORAGE")]
+    raw: Option<String>,
+    /// Name the convention of a split sum or albedo that does not tell it: axes, rows, texels, model, channels; every candidate with its
+    /// error.
+    #[arg(long)]
+    recognise: bool,
+    /// Seed of the pixels that are compared.
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "recognise")]
+    seed: u64,
     /// Print the provenance as JSON instead of text.
     #[arg(long)]
     json: bool,
@@ -22,10 +33,21 @@ pub struct Args {
 /// # Errors
 /// [`Failure`] when a file cannot be read.
 pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
+    let layout = super::diff::layout(args.raw.as_deref(), &args.files)?;
     for path in &args.files {
-        let image = read::read_file_until(cancel, path).map_err(|e| super::diff::read_failure(&e))?;
+        let is_bare = path.extension().is_some_and(|e| e.eq_ignore_ascii_case(Raw.extension()));
+        let of_file = layout.as_ref().filter(|_| is_bare);
+        let bytes = read::load_until(cancel, path).map_err(|e| super::diff::read_failure(&e))?;
+        let image = beside::read(path, &bytes, of_file, cancel).map_err(|e| {
+            let name = path.display();
+            Failure { message: format!("{name}: {e}"), ..super::diff::read_failure(&e) }
+        })?;
         let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-        if args.json {
+        if args.recognise {
+            let found = recognise::recognise(&image, args.seed, cancel)?;
+            let json = || serde_json::json!({ "file": name, "recognised": found }).to_string();
+            output::data(&if args.json { json() } else { recognise::words(&name, found.as_ref()) })?;
+        } else if args.json {
             output::data(&json(&name, &image))?;
         } else {
             output::data(&report::inspect(&name, &image))?;

@@ -9,6 +9,7 @@ pub mod difference;
 pub mod inspect;
 mod inspect_map;
 pub mod plot;
+pub mod recognise;
 pub mod text;
 
 pub use diff::diff;
