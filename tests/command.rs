@@ -3,6 +3,7 @@
 
 mod eval;
 mod messages;
+mod outside;
 #[cfg(unix)]
 mod signals;
 mod stopping;

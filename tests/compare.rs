@@ -37,6 +37,7 @@ fn image(values: &[f64]) -> Image {
         height: 2,
         channels: vec![plane("a", values.to_vec()), plane("b", vec![0.0; values.len()])],
         provenance: None,
+        warnings: Vec::new(),
     }
 }
 

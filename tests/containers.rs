@@ -19,5 +19,6 @@ mod front_ends;
 mod hostile;
 mod ktx2_file;
 mod others;
+mod outside;
 mod storages;
 mod support;

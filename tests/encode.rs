@@ -145,7 +145,8 @@ fn a_table_names_the_texel_that_does_not_fit() {
 #[test]
 fn every_container_gives_back_every_bit() {
     let names = ["dfg.scale", "dfg.bias", "a", "z.cloth"];
-    for encoder in ENCODERS.iter().filter(|e| !e.magic().is_empty()) {
+    // `merl` holds one shape of table
+    for encoder in ENCODERS.iter().filter(|e| !e.magic().is_empty() && e.id() != "merl") {
         for &storage in encoder.storages() {
             let most = encoder.most_channels().min(storage.most_channels().unwrap_or(4)).min(4);
             for n in 1..=most {

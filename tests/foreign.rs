@@ -5,7 +5,7 @@ mod shapes;
 
 use crate::sample::{file, grid, hard, provenance, table};
 use brdfbake::encode::read::read_file;
-use brdfbake::encode::{ENCODERS, EncodeInput, Label, Storage, encoder, quantise_table};
+use brdfbake::encode::{ENCODERS, EncodeInput, FileOption, Label, Shape, Storage, encoder, quantise_table};
 
 /// Writes one file of each kind, with what it must hold, for `tests/foreign/read_back.py`.
 #[test]
@@ -16,7 +16,8 @@ fn write_for_foreign_readers() {
     std::fs::create_dir_all(&folder).unwrap();
     let names = ["dfg.scale", "dfg.bias", "a", "z.cloth"];
     assert_eq!(grid().len(), 35);
-    for encoder in ENCODERS.iter().filter(|e| !e.magic().is_empty()) {
+    // the binary of the MERL database holds one shape of table: see `read_merl.py`
+    for encoder in ENCODERS.iter().filter(|e| !e.magic().is_empty() && e.id() != "merl") {
         for &storage in encoder.storages() {
             let most = encoder.most_channels().min(storage.most_channels().unwrap_or(4)).min(4);
             for n in 1..=most {
@@ -33,7 +34,10 @@ fn write_for_foreign_readers() {
                         (names[c].to_owned(), column.into())
                     })
                     .collect();
+                let shape = Shape { grid: &t.grid, channels: n, storage, options: &[] };
+                let components = encoder.components(&shape);
                 let expected = serde_json::json!({"width": 7, "height": 5, "storage": storage.id(), "channels": planes,
+                    "components": components, "fill": shape.fill(components),
                     "brdfbake": serde_json::to_string(&p).unwrap()});
                 std::fs::write(folder.join(format!("{name}.expected.json")), expected.to_string()).unwrap();
             }
@@ -41,6 +45,43 @@ fn write_for_foreign_readers() {
     }
     shapes::write(&folder);
     write_set(&folder);
+    write_positional(&folder);
+}
+
+/// OpenEXR under the names that loaders of colours know, and what each name must hold.
+fn write_positional(folder: &std::path::Path) {
+    let exr = encoder("exr").unwrap();
+    for (n, option) in (1..=4).map(|n| (n, FileOption::Positional)).chain([(1, FileOption::Luminance)]) {
+        for storage in [Storage::Half, Storage::Float] {
+            let t = table(&["dfg.scale", "dfg.bias", "a", "z.cloth"][..n], hard(storage));
+            let rounded = quantise_table(&t, storage).unwrap();
+            let options = [option];
+            let shape = Shape { grid: &t.grid, channels: n, storage, options: &options };
+            let names = exr.names(&shape);
+            let mut p = provenance(&t, storage);
+            if let Some(encoding) = &mut p.encoding {
+                encoding.fill = shape.fill(exr.components(&shape));
+                encoding.names = names.iter().map(|n| (*n).to_owned()).collect();
+            }
+            let text = serde_json::to_string(&p).unwrap();
+            let label = Label { name: &p.name, provenance_json: &text, ..Label::default() };
+            let bytes = exr.encode(&crate::sample::input(&t, &rounded, storage, &options, label)).unwrap();
+            let value = |i: usize, c: usize| match (n, c) {
+                (1, _) => rounded.values[i],
+                (2, 2) => 0.0,
+                _ => rounded.values[i * n + c],
+            };
+            let column = |c: usize| -> Vec<String> {
+                (0..t.grid.len()).map(|i| format!("{:016x}", value(i, c).to_bits())).collect()
+            };
+            let planes: serde_json::Map<_, _> =
+                names.iter().enumerate().map(|(c, name)| ((*name).to_owned(), column(c).into())).collect();
+            let expected = serde_json::json!({"width": 7, "height": 5, "storage": storage.id(), "channels": planes, "brdfbake": text});
+            let name = format!("{}-{n}.{}.exr", storage.id(), option.id());
+            std::fs::write(folder.join(&name), bytes).unwrap();
+            std::fs::write(folder.join(format!("{name}.expected.json")), expected.to_string()).unwrap();
+        }
+    }
 }
 
 /// Two tables as parts of one OpenEXR file, and what each part must hold.

@@ -2,9 +2,11 @@
 
 use super::{Exit, Failure, output};
 use crate::cancel::Cancel;
-use crate::encode::ReadError;
-use crate::encode::diff::Tolerance;
-use crate::encode::diff_files::{self, DiffError};
+use crate::encode::diff::{Pairing, Tolerance};
+use crate::encode::diff_files::{self, DiffError, Manner};
+use crate::encode::layout::Layout;
+use crate::encode::raw::Raw;
+use crate::encode::{Encoder, ReadError};
 use crate::math::figures::exact;
 use crate::report;
 use std::path::PathBuf;
@@ -22,6 +24,16 @@ pub struct Args {
     /// Largest difference in steps of the stored precision that counts as equal.
     #[arg(long, value_name = "N", default_value_t = 0.0)]
     ulps: f64,
+    /// Channels to compare, first file = second file; others are left out. Without it they are matched by name, or by position where
+    /// the two files have no name in common.
+    #[arg(long, value_name = "A=B", value_delimiter = ',', conflicts_with = "by_position")]
+    channels: Vec<String>,
+    /// Match channels by position, whatever their names.
+    #[arg(long)]
+    by_position: bool,
+    /// How the numbers of bare files (.bin) lie, such as 128x64x2:half; without it the manifest beside them tells.
+    #[arg(long, value_name = "WxHxC:STORAGE")]
+    raw: Option<String>,
     /// Print the result as JSON.
     #[arg(long)]
     json: bool,
@@ -43,13 +55,49 @@ pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
         )));
     }
     let tolerance = Tolerance { absolute: args.tolerance, ulps: args.ulps };
-    let diff = diff_files::paths_until(cancel, &args.a, &args.b, tolerance).map_err(failure)?;
+    let manner = Manner {
+        tolerance,
+        pairing: pairing(args)?,
+        layout: layout(args.raw.as_deref(), [&args.a, &args.b])?,
+    };
+    let diff = diff_files::paths_until(cancel, &args.a, &args.b, &manner).map_err(failure)?;
     if !args.quiet {
         let (a, b) = (args.a.display().to_string(), args.b.display().to_string());
         let json = || serde_json::to_string(&diff).unwrap_or_default();
         output::data(&if args.json { json() } else { report::diff(&a, &b, &diff) })?;
     }
     Ok(if diff.equal() { Exit::Done } else { Exit::Failed })
+}
+
+/// Pairs of channels as they are asked for.
+fn pairing(args: &Args) -> Result<Pairing, Failure> {
+    if (args.by_position || !args.channels.is_empty()) && args.a.is_dir() {
+        return Err(Failure::usage("--channels and --by-position are for two files, not for folders"));
+    }
+    if args.by_position {
+        return Ok(Pairing::Position);
+    }
+    let pair = |text: &String| match text.split_once('=') {
+        Some((a, b)) if !a.is_empty() && !b.is_empty() => Ok([a.to_owned(), b.to_owned()]),
+        _ => Err(Failure::usage(format!("--channels `{text}` is not NAME=NAME, such as R=dfg.scale"))),
+    };
+    let pairs: Vec<[String; 2]> = args.channels.iter().map(pair).collect::<Result<_, _>>()?;
+    Ok(if pairs.is_empty() { Pairing::Best } else { Pairing::Named(pairs) })
+}
+
+/// The layout of bare files, which one of the files must be.
+pub(super) fn layout<'a>(
+    text: Option<&str>,
+    files: impl IntoIterator<Item = &'a PathBuf>,
+) -> Result<Option<Layout>, Failure> {
+    let Some(text) = text else { return Ok(None) };
+    let extension = Raw.extension();
+    let is_bare =
+        |p: &PathBuf| p.is_dir() || p.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
+    if !files.into_iter().any(is_bare) {
+        return Err(Failure::usage(format!("--raw tells how .{extension} files lie, and there is none")));
+    }
+    Layout::parse(text).map(Some).map_err(|e| Failure::usage(format!("--raw: {e}")))
 }
 
 fn failure(error: DiffError) -> Failure {

@@ -1,12 +1,17 @@
-//! Reads DDS: the formats that are written, and the float formats of the header without DX10 (Direct3D 9 codes 111 to
-//! 116, as tables of linearly transformed cosines are often shipped). Largest level, slices and layers stacked.
+//! Reads DDS: the formats that are written; the formats of the header without DX10 (Direct3D 9 codes 36 and 111 to 116, as
+//! tables of linearly transformed cosines are often shipped, and the codes of BC4 and BC5); pixels that are told by bit masks.
+//! Largest level, slices and layers stacked.
 
 use super::dds::{HEAD, TEXTURE2D, TEXTURE3D, storage};
-use super::read::{Image, MAX_SAMPLES, ReadError};
+use super::dds_masks::Masks;
+use super::read::{Image, MAX_SAMPLES, Plane, ReadError};
 use super::{Storage, texels};
 use crate::cancel::Cancel;
 
 const FORMAT: &str = "dds";
+
+/// `DDPF_FOURCC`: the pixel format is a code.
+const FOURCC: u32 = 0x4;
 
 /// What the headers tell.
 struct Header {
@@ -15,33 +20,60 @@ struct Header {
     /// Slices of a volume, or layers of an array.
     slices: usize,
     levels: u32,
-    storage: Storage,
-    components: usize,
+    pixels: Pixels,
     /// Where the pixels begin.
     start: usize,
+}
+
+/// How a pixel lies in the file.
+enum Pixels {
+    Stored(Storage, usize),
+    Masked(Masks),
+}
+
+impl Pixels {
+    fn components(&self) -> usize {
+        match self {
+            Pixels::Stored(_, components) => *components,
+            Pixels::Masked(masks) => masks.channels(),
+        }
+    }
+
+    /// Bytes of a picture; nothing if they cannot be counted.
+    fn bytes(&self, extent: [usize; 3]) -> Option<usize> {
+        match self {
+            Pixels::Stored(storage, components) => texels::bytes(*storage, *components, extent),
+            Pixels::Masked(masks) => extent.iter().try_fold(masks.bytes(), |n, side| n.checked_mul(*side)),
+        }
+    }
+
+    fn unpack(&self, data: &[u8], extent: [usize; 3], cancel: &Cancel) -> Vec<Plane> {
+        match self {
+            Pixels::Stored(storage, components) => {
+                texels::finish(texels::unpack(data, *storage, *components, extent, cancel), None)
+            }
+            Pixels::Masked(masks) => masks.unpack(data, cancel),
+        }
+    }
 }
 
 pub(super) fn read(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
     let h = header(bytes)?;
     let height = h.height.saturating_mul(h.slices);
-    if h.width.saturating_mul(height).saturating_mul(h.components) > MAX_SAMPLES {
+    if h.width.saturating_mul(height).saturating_mul(h.pixels.components()) > MAX_SAMPLES {
         return Err(ReadError::Samples { format: FORMAT, width: h.width, height });
     }
     if h.levels > 1 && h.slices > 1 {
         return Err(fault(format!("{} levels of {} slices are not supported", h.levels, h.slices)));
     }
     let extent = [h.width, h.height, h.slices];
-    let size = texels::bytes(h.storage, h.components, extent).ok_or(ReadError::Samples {
-        format: FORMAT,
-        width: h.width,
-        height,
-    })?;
+    let size = h.pixels.bytes(extent).ok_or(ReadError::Samples { format: FORMAT, width: h.width, height })?;
     let data = bytes.get(h.start..h.start.saturating_add(size)).ok_or_else(|| {
         let got = bytes.len().saturating_sub(h.start);
         fault(format!("the file has {got} bytes of pixels, its header tells of {size}"))
     })?;
-    let channels = texels::finish(texels::unpack(data, h.storage, h.components, extent, cancel), None);
-    Ok(Image { format: FORMAT, width: h.width, height, channels, provenance: None })
+    let channels = h.pixels.unpack(data, extent, cancel);
+    Ok(Image { format: FORMAT, width: h.width, height, channels, provenance: None, warnings: Vec::new() })
 }
 
 fn header(bytes: &[u8]) -> Result<Header, ReadError> {
@@ -59,11 +91,17 @@ fn header(bytes: &[u8]) -> Result<Header, ReadError> {
         return Err(fault("cube maps are not supported".to_owned()));
     }
     let volume = if caps2 & 0x20_0000 != 0 { length(depth) } else { 1 };
-    let code = word(84)?;
+    let (flags, code) = (word(80)?, word(84)?);
+    if flags & FOURCC == 0 {
+        let masks = [word(92)?, word(96)?, word(100)?, word(104)?];
+        let pixels = Pixels::Masked(Masks::new(flags, word(88)?, masks)?);
+        return Ok(Header { width, height, slices: volume, levels, pixels, start: 128 });
+    }
     if code != u32::from_le_bytes(*b"DX10") {
         let (storage, components) =
-            legacy(code).ok_or_else(|| fault(format!("pixel format {code:#x} is not supported")))?;
-        return Ok(Header { width, height, slices: volume, levels, storage, components, start: 128 });
+            legacy(code).ok_or_else(|| fault(format!("pixel format {} is not supported", name(code))))?;
+        let pixels = Pixels::Stored(storage, components);
+        return Ok(Header { width, height, slices: volume, levels, pixels, start: 128 });
     }
     let (format, dimension, misc, layers) = (word(128)?, word(132)?, word(136)?, length(word(140)?));
     let (storage, components) =
@@ -74,12 +112,27 @@ fn header(bytes: &[u8]) -> Result<Header, ReadError> {
         _ => return Err(fault(format!("resource dimension {dimension} is not supported"))),
     };
     word(HEAD - 4)?;
-    Ok(Header { width, height, slices, levels, storage, components, start: HEAD })
+    let pixels = Pixels::Stored(storage, components);
+    Ok(Header { width, height, slices, levels, pixels, start: HEAD })
 }
 
-/// `D3DFMT` codes of floats.
+/// A code as it is written: four letters, or a number.
+fn name(code: u32) -> String {
+    let letters = code.to_le_bytes();
+    let is_text = letters.iter().all(|b| b.is_ascii_graphic() || *b == b' ');
+    if is_text { format!("`{}`", String::from_utf8_lossy(&letters)) } else { format!("{code:#x}") }
+}
+
+/// `D3DFMT` codes of unorm and floats, and the older names of BC4 and BC5.
 const fn legacy(code: u32) -> Option<(Storage, usize)> {
+    const BC4U: u32 = u32::from_le_bytes(*b"BC4U");
+    const ATI1: u32 = u32::from_le_bytes(*b"ATI1");
+    const BC5U: u32 = u32::from_le_bytes(*b"BC5U");
+    const ATI2: u32 = u32::from_le_bytes(*b"ATI2");
     Some(match code {
+        36 => (Storage::Unorm16, 4),
+        BC4U | ATI1 => (Storage::Bc4, 1),
+        BC5U | ATI2 => (Storage::Bc5, 2),
         111 => (Storage::Half, 1),
         112 => (Storage::Half, 2),
         113 => (Storage::Half, 4),
@@ -90,6 +143,6 @@ const fn legacy(code: u32) -> Option<(Storage, usize)> {
     })
 }
 
-fn fault(fault: String) -> ReadError {
+pub(super) fn fault(fault: String) -> ReadError {
     ReadError::Fault { format: FORMAT, fault }
 }

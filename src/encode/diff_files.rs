@@ -1,8 +1,11 @@
 //! Compares two files or two folders of outputs. Pictures are compared as values, JSON as JSON, anything else as bytes.
 
+use super::Encoder;
 use super::atomic::HIDDEN;
-use super::diff::{self, ImageDiff, Tolerance};
+use super::beside;
+use super::diff::{self, ImageDiff, Pairing, Tolerance};
 use super::diff_json::{self, JsonDiff};
+use super::layout::Layout;
 use super::read::{self, ReadError};
 use crate::cancel::{Cancel, Cancelled};
 use serde::Serialize;
@@ -13,6 +16,23 @@ use std::path::{Path, PathBuf};
 
 /// Folders nested deeper than this are refused: a link that leads upwards would never end.
 const MAX_DEPTH: usize = 64;
+
+/// How files are compared.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Manner {
+    /// How far apart values may be.
+    pub tolerance: Tolerance,
+    /// Which channels are compared.
+    pub pairing: Pairing,
+    /// How the numbers of bare files lie; without it the manifests beside them tell.
+    pub layout: Option<Layout>,
+}
+
+impl From<Tolerance> for Manner {
+    fn from(tolerance: Tolerance) -> Manner {
+        Manner { tolerance, ..Manner::default() }
+    }
+}
 
 /// How two files of the same name relate.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -147,17 +167,17 @@ impl PathDiff {
 /// # Errors
 /// [`DiffError`] if one cannot be read, or one is a file and the other a folder.
 pub fn paths(a: &Path, b: &Path, tolerance: Tolerance) -> Result<PathDiff, DiffError> {
-    paths_until(&Cancel::new(), a, b, tolerance)
+    paths_until(&Cancel::new(), a, b, &tolerance.into())
 }
 
 /// [`paths`], until it is stopped.
 ///
 /// # Errors
 /// As [`paths`]; [`DiffError::Cancelled`].
-pub fn paths_until(cancel: &Cancel, a: &Path, b: &Path, tolerance: Tolerance) -> Result<PathDiff, DiffError> {
+pub fn paths_until(cancel: &Cancel, a: &Path, b: &Path, manner: &Manner) -> Result<PathDiff, DiffError> {
     match (a.is_dir(), b.is_dir()) {
-        (true, true) => folders_until(cancel, a, b, tolerance).map(PathDiff::Folder),
-        (false, false) => files_until(cancel, a, b, tolerance).map(|d| PathDiff::File(Box::new(d))),
+        (true, true) => folders_until(cancel, a, b, manner).map(PathDiff::Folder),
+        (false, false) => files_until(cancel, a, b, manner).map(|d| PathDiff::File(Box::new(d))),
         _ => Err(DiffError::Kinds { a: a.to_owned(), b: b.to_owned() }),
     }
 }
@@ -167,12 +187,12 @@ pub fn paths_until(cancel: &Cancel, a: &Path, b: &Path, tolerance: Tolerance) ->
 /// # Errors
 /// [`DiffError`] if one cannot be read.
 pub fn files(a: &Path, b: &Path, tolerance: Tolerance) -> Result<FileDiff, DiffError> {
-    files_until(&Cancel::new(), a, b, tolerance)
+    files_until(&Cancel::new(), a, b, &tolerance.into())
 }
 
-fn files_until(cancel: &Cancel, a: &Path, b: &Path, tolerance: Tolerance) -> Result<FileDiff, DiffError> {
+fn files_until(cancel: &Cancel, a: &Path, b: &Path, manner: &Manner) -> Result<FileDiff, DiffError> {
     let (x, y) = (load(cancel, a)?, load(cancel, b)?);
-    compare(cancel, [a, b], [&x, &y], tolerance)
+    compare(cancel, [a, b], [&x, &y], manner)
 }
 
 /// Compares the files of two folders, matched by relative path. What a killed run left (names with [`HIDDEN`]) is
@@ -181,10 +201,10 @@ fn files_until(cancel: &Cancel, a: &Path, b: &Path, tolerance: Tolerance) -> Res
 /// # Errors
 /// [`DiffError`] if a file that both folders have, with different bytes, cannot be read.
 pub fn folders(a: &Path, b: &Path, tolerance: Tolerance) -> Result<FolderDiff, DiffError> {
-    folders_until(&Cancel::new(), a, b, tolerance)
+    folders_until(&Cancel::new(), a, b, &tolerance.into())
 }
 
-fn folders_until(cancel: &Cancel, a: &Path, b: &Path, tolerance: Tolerance) -> Result<FolderDiff, DiffError> {
+fn folders_until(cancel: &Cancel, a: &Path, b: &Path, manner: &Manner) -> Result<FolderDiff, DiffError> {
     let (mut left, mut right) = (BTreeSet::new(), BTreeSet::new());
     list(a, "", 0, &mut left)?;
     list(b, "", 0, &mut right)?;
@@ -196,7 +216,7 @@ fn folders_until(cancel: &Cancel, a: &Path, b: &Path, tolerance: Tolerance) -> R
             _ => {
                 let (p, q) = (a.join(name), b.join(name));
                 let (x, y) = (load(cancel, &p)?, load(cancel, &q)?);
-                if x == y { FileDiff::Identical } else { compare(cancel, [&p, &q], [&x, &y], tolerance)? }
+                if x == y { FileDiff::Identical } else { compare(cancel, [&p, &q], [&x, &y], manner)? }
             }
         };
         files.push((name.clone(), diff));
@@ -216,19 +236,30 @@ fn compare(
     cancel: &Cancel,
     paths: [&Path; 2],
     bytes: [&[u8]; 2],
-    tolerance: Tolerance,
+    manner: &Manner,
 ) -> Result<FileDiff, DiffError> {
     let extension = |p: &Path| p.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     let [a, b] = paths.map(|p| extension(p).unwrap_or_default());
-    let picture = |e: &str| super::ENCODERS.iter().any(|c| !c.magic().is_empty() && c.extension() == e);
-    if picture(&a) && picture(&b) {
+    let told = |i: usize| manner.layout.is_some() || beside::entry(paths[i]).is_some();
+    let picture = |i: usize, e: &str| {
+        let of = |c: &&&dyn Encoder| c.extension() == e;
+        super::ENCODERS.iter().find(of).is_some_and(|c| !c.magic().is_empty() || c.id() == "raw" && told(i))
+    };
+    if picture(0, &a) && picture(1, &b) {
         let image = |i: usize| {
-            read::read_bytes_until(cancel, bytes[i]).map_err(|e| match e {
+            let extension = [&a, &b][i];
+            let layout = manner.layout.as_ref().filter(|_| extension.as_str() == super::raw::Raw.extension());
+            beside::read(paths[i], bytes[i], layout, cancel).map_err(|e| match e {
                 ReadError::Cancelled(stopped) => stopped.into(),
                 source => DiffError::Read { path: paths[i].to_owned(), source },
             })
         };
-        return Ok(FileDiff::Image(diff::images(&image(0)?, &image(1)?, tolerance)));
+        return Ok(FileDiff::Image(diff::images_by(
+            &image(0)?,
+            &image(1)?,
+            manner.tolerance,
+            &manner.pairing,
+        )));
     }
     if bytes[0] == bytes[1] {
         return Ok(FileDiff::Identical);

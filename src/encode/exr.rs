@@ -5,13 +5,17 @@
 //! Channel names are the ids of the table. OpenEXR reads a dot as a layer: `dfg.scale` is channel `scale` of layer
 //! `dfg`. Channels lie in the file sorted by name, as the format demands.
 //!
+//! Loaders of pictures often know the names R, G, B, A and Y only, and refuse others: option `positional` names the channels so, by
+//! position (of two channels B is 0, one channel is written as R, G and B), option `y` names the one channel Y. The ids and their
+//! meaning then stand in the provenance alone.
+//!
 //! The provenance is the one custom attribute, `brdfbake`, a UTF-8 string, of the first part. There must not be a second one: the `exr`
 //! crate keeps custom attributes in a `HashMap` with a random seed, so that two of them make the bytes differ from run
 //! to run. The line order is fixed to increasing for the same reason.
 
 use super::mips::Mips;
 use super::stoppable::Stoppable;
-use super::{EncodeError, EncodeInput, Encoder, FileOption, Image as Picture, ReadError, Storage};
+use super::{EncodeError, EncodeInput, Encoder, FileOption, Image as Picture, ReadError, Shape, Storage};
 use crate::cancel::Cancel;
 use crate::grid::Channel;
 use crate::grid::provenance::ATTRIBUTE;
@@ -52,7 +56,21 @@ impl Encoder for Exr {
     }
 
     fn options(&self) -> &'static [FileOption] {
-        &[FileOption::Parts, FileOption::Tiled]
+        &[FileOption::Parts, FileOption::Tiled, FileOption::Positional, FileOption::Luminance]
+    }
+
+    /// With option `positional` two channels get a third, which is 0.
+    fn components(&self, shape: &Shape<'_>) -> usize {
+        if shape.has(FileOption::Positional) && shape.channels == 2 { 3 } else { shape.channels }
+    }
+
+    fn names(&self, shape: &Shape<'_>) -> &'static [&'static str] {
+        match shape.channels {
+            _ if shape.has(FileOption::Luminance) => &["Y"],
+            _ if !shape.has(FileOption::Positional) => &[],
+            4 => &["R", "G", "B", "A"],
+            _ => &["R", "G", "B"],
+        }
     }
 
     fn most_channels(&self) -> usize {
@@ -204,18 +222,39 @@ fn write(
 
 /// The channels of a run of texels, sorted by name.
 fn channels(input: &EncodeInput<'_>, texels: Range<usize>) -> AnyChannels<FlatSamples> {
-    let channel = |(c, channel): (usize, &Channel)| AnyChannel {
-        name: text(&channel.id),
-        sample_data: samples(input, c, texels.clone()),
+    let channel = |name: &str, sample_data: FlatSamples| AnyChannel {
+        name: text(name),
+        sample_data,
         quantize_linearly: false,
         sampling: Vec2(1, 1),
     };
-    AnyChannels::sort(input.channels.iter().enumerate().map(channel).collect())
+    let shape = input.shape();
+    let (n, fill) = (input.channels.len(), shape.fill(Exr.components(&shape)));
+    let named = |(i, name): (usize, &&str)| {
+        let data = match fill.get(i.wrapping_sub(n)) {
+            Some(&value) => constant(input.storage, value, texels.len()),
+            None => samples(input, i.min(n - 1), texels.clone()),
+        };
+        channel(name, data)
+    };
+    let own = |(c, id): (usize, &Channel)| channel(&id.id, samples(input, c, texels.clone()));
+    AnyChannels::sort(match Exr.names(&shape) {
+        [] => input.channels.iter().enumerate().map(own).collect(),
+        names => names.iter().enumerate().map(named).collect(),
+    })
 }
 
 /// UTF-8, as the OpenEXR file layout demands; the crate's own conversion from `str` is Latin-1.
 fn text(s: &str) -> Text {
     Text::from_slice_unchecked(s.as_bytes())
+}
+
+#[allow(clippy::cast_possible_truncation, reason = "the value is 0 or 1")]
+fn constant(storage: Storage, value: f64, count: usize) -> FlatSamples {
+    match storage {
+        Storage::Half => FlatSamples::F16(vec![f16::from_f64(value); count]),
+        _ => FlatSamples::F32(vec![value as f32; count]),
+    }
 }
 
 /// One channel. The values are numbers of the storage already (checked), so both conversions are exact.

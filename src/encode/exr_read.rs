@@ -7,6 +7,7 @@
 //! can stand for, and the picture is made when all of its blocks are there.
 
 use super::exr_chunks::{self, Chunks};
+use super::exr_names;
 use super::read::{Claim, Image, MAX_SAMPLES, Plane, ReadError, Sample};
 use crate::cancel::Cancel;
 use crate::grid::provenance::ATTRIBUTE;
@@ -46,9 +47,13 @@ fn decode(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
         return Err(fault(format!("{} pixels are in no block of the file", picture.pixels_left)));
     }
     let parts = slices(&provenance, picture.first.len());
-    let channels = stack(picture.finish(headers, cancel).map_err(library)?, parts);
+    let mut channels = stack(picture.finish(headers, cancel).map_err(library)?, parts);
+    let mut warnings = Vec::new();
+    if let Some(Claim::Known(p)) = &provenance {
+        (channels, warnings) = exr_names::as_channels(channels, p);
+    }
     let height = channels.first().map_or(height, |c| c.values.len() / width.max(1));
-    Ok(Image { format: FORMAT, width, height, channels, provenance })
+    Ok(Image { format: FORMAT, width, height, channels, provenance, warnings })
 }
 
 /// Number of parts, if the provenance tells of as many slices.

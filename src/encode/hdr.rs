@@ -136,7 +136,7 @@ fn read(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
         texels::unpack(&pixels, Storage::Rgbe, 3, [width, height, 1], cancel),
         provenance.as_ref(),
     );
-    Ok(Image { format: FORMAT, width, height, channels, provenance })
+    Ok(Image { format: FORMAT, width, height, channels, provenance, warnings: Vec::new() })
 }
 
 /// `-Y height +X width`, the only order that is read.

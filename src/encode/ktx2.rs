@@ -13,7 +13,8 @@
 //! | `bc6h`, `bc6h-signed` | BC6H UFLOAT, SFLOAT BLOCK |
 //!
 //! A table with three axes is a volume, with option `layers` an array; one with four is always an array, since nothing
-//! filters across the fourth. Few GPUs sample three components of 8 or 16 bits: `rgba` makes them four.
+//! filters across the fourth. Few GPUs and no web engine sample three components: such a table gets a fourth, which is 1 (see the
+//! fill options), unless option `rgb` asks for three. `rgba` makes four of any number.
 //!
 //! A table has one level; a pyramid ([`super::mips`]) has all of its own, the smallest first in the file, as the format demands. The keys are `KTXorientation` (`rd`, `rdi` for a volume: down and away), `KTXwriter`,
 //! `KTXwriterScParams` if it is supercompressed, and `brdfbake`, the provenance as JSON text. Values end with a NUL, as
@@ -68,11 +69,11 @@ impl Encoder for Ktx2 {
     }
 
     fn options(&self) -> &'static [FileOption] {
-        use FileOption::{FillOne, FillZero, Layers, Rgba};
+        use FileOption::{FillOne, FillZero, Layers, Rgb, Rgba};
         #[cfg(feature = "zstd")]
-        return &[Rgba, FillZero, FillOne, Layers, FileOption::Zstd];
+        return &[Rgba, Rgb, FillZero, FillOne, Layers, FileOption::Zstd];
         #[cfg(not(feature = "zstd"))]
-        return &[Rgba, FillZero, FillOne, Layers];
+        return &[Rgba, Rgb, FillZero, FillOne, Layers];
     }
 
     fn most_channels(&self) -> usize {
@@ -80,7 +81,11 @@ impl Encoder for Ktx2 {
     }
 
     fn components(&self, shape: &Shape<'_>) -> usize {
-        let wanted = if shape.has(FileOption::Rgba) { 4 } else { shape.channels };
+        let wanted = match shape.channels {
+            _ if shape.has(FileOption::Rgba) => 4,
+            3 if !shape.has(FileOption::Rgb) => 4,
+            n => n,
+        };
         texels::packed(shape.storage).unwrap_or(wanted)
     }
 

@@ -82,7 +82,27 @@ pub(super) fn read(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
         height,
         channels: texels::finish(planes, provenance.as_ref()),
         provenance,
+        warnings: descriptor(bytes)?,
     })
+}
+
+/// What is wrong with the data format descriptor. Its numbers are not needed, since the Vulkan format says the same, but other readers
+/// refuse a file without them.
+fn descriptor(bytes: &[u8]) -> Result<Vec<String>, ReadError> {
+    let (start, length) = (word(bytes, 48)?, word(bytes, 52)?);
+    let block = part(bytes, start.into(), length.into())?;
+    let told = word(block, 0).unwrap_or(0);
+    // total size, then a block with a header of 24 bytes and 16 bytes a sample (Khronos Data Format 1.3, section 3)
+    let samples = length.saturating_sub(28) / 16;
+    let fault = match () {
+        () if length < 28 => "is missing",
+        () if told != length => "gives another size than the header",
+        () if samples == 0 => "describes no channel",
+        () => return Ok(Vec::new()),
+    };
+    Ok(vec![format!(
+        "the data format descriptor {fault}: the pixels are taken as their VkFormat tells, other readers may refuse the file"
+    )])
 }
 
 fn part(bytes: &[u8], start: u64, length: u64) -> Result<&[u8], ReadError> {

@@ -2,12 +2,16 @@
 //!
 //! A plane is `[theta_h][theta_d][phi_d]`, phi_d fastest. The published reader multiplies the planes by 1/1500, 1.15/1500 and
 //! 1.66/1500, so they hold f times the inverse: a reader gets f back to 2 ulp of f64. The format has no place for
-//! metadata: the manifest beside the file says what it holds. Values are rounded to 32-bit floats first, as measured
-//! data have far fewer digits than f64.
+//! metadata: the manifest beside the file says what it holds. With `float` values are rounded to 32-bit floats first, as measured
+//! data have far fewer digits than f64; `double` keeps all digits.
+//!
+//! A file is read as a picture 180 wide, with the 90 rows of theta_d below each other for each theta_h: channels R, G, B.
 //!
 //! Source: [Matusik2003](crate::cite::MATUSIK_2003) and the reader that is published with the database.
 
-use super::{EncodeError, EncodeInput, Encoder, Shape, Storage};
+use super::read::{Plane, Sample};
+use super::{EncodeError, EncodeInput, Encoder, Image, ReadError, Shape, Storage};
+use crate::cancel::Cancel;
 use crate::grid::{Grid, Texel, Warp};
 
 /// The container. See the module.
@@ -30,7 +34,7 @@ impl Encoder for Merl {
     }
 
     fn storages(&self) -> &'static [Storage] {
-        &[Storage::Float]
+        &[Storage::Float, Storage::Double]
     }
 
     /// One channel is grey, three are a colour; the axes are those of the database.
@@ -59,6 +63,42 @@ impl Encoder for Merl {
         false
     }
 
+    /// One channel is written three times.
+    fn names(&self, _shape: &Shape<'_>) -> &'static [&'static str] {
+        &COLOURS
+    }
+
+    fn magic(&self) -> &'static [&'static [u8]] {
+        &[&[90, 0, 0, 0, 90, 0, 0, 0, 180, 0, 0, 0]]
+    }
+
+    fn read(&self, bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
+        let texels = AXES.iter().map(|a| a.1).product::<usize>();
+        let (expected, got) = (12 + 24 * texels, bytes.len());
+        if got != expected {
+            let fault = format!("the file has {got} bytes, the binary of the database takes {expected}");
+            return Err(ReadError::Fault { format: self.id(), fault });
+        }
+        let plane = |(c, numbers): (usize, &[u8])| Plane {
+            name: COLOURS[c].to_owned(),
+            sample: Sample::Double,
+            range: [0.0, 1.0],
+            values: numbers
+                .chunks_exact(8)
+                .take_while(|_| !cancel.is_set())
+                .map(|b| double(b) * SCALES[c])
+                .collect(),
+        };
+        Ok(Image {
+            format: self.id(),
+            width: AXES[0].1,
+            height: AXES[1].1 * AXES[2].1,
+            channels: bytes[12..].chunks_exact(8 * texels).enumerate().map(plane).collect(),
+            provenance: None,
+            warnings: Vec::new(),
+        })
+    }
+
     /// Three planes of f64, whatever the channels.
     fn most_bytes(&self, shape: &Shape<'_>) -> usize {
         12 + 24 * shape.grid.len()
@@ -81,6 +121,13 @@ impl Encoder for Merl {
         }
         Ok(bytes)
     }
+}
+
+/// Names of the planes.
+const COLOURS: [&str; 3] = ["R", "G", "B"];
+
+fn double(bytes: &[u8]) -> f64 {
+    bytes.try_into().map_or(f64::NAN, f64::from_le_bytes)
 }
 
 /// Are these the axes of the database?

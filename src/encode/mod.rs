@@ -9,8 +9,8 @@
 //! each other: texel `(i, j, k)` is at `x = i, y = j + k len1`. A table with one axis is one row.
 //!
 //! # Channels
-//! EXR channels carry the ids of the table (`dfg.scale`); EXR sorts them by name, so readers look them up by name. PNG
-//! has no names: see [`png`] for the layouts.
+//! EXR channels carry the ids of the table (`dfg.scale`), or with option `positional` or `y` the names that loaders of colours know; EXR
+//! sorts them by name, so readers look them up by name. PNG has no names: see [`png`] for the layouts.
 //!
 //! # Example
 //! ```
@@ -46,11 +46,13 @@
 //! One file, one `pub mod` line, one line in [`ENCODERS`].
 
 pub mod atomic;
+pub mod beside;
 mod blocks;
 pub mod code;
 mod coding;
 pub mod csv;
 pub mod dds;
+mod dds_masks;
 mod dds_read;
 mod dfd;
 pub mod diff;
@@ -59,10 +61,12 @@ pub mod diff_json;
 mod error;
 pub mod exr;
 mod exr_chunks;
+mod exr_names;
 mod exr_read;
 pub mod hdr;
 pub mod ktx2;
 mod ktx2_read;
+pub mod layout;
 pub mod merl;
 pub mod mips;
 pub mod npy;
@@ -110,6 +114,12 @@ pub trait Encoder: Debug + Send + Sync {
     /// Components of a pixel that holds a table of this shape; those beyond its channels are filled.
     fn components(&self, shape: &Shape<'_>) -> usize {
         shape.channels
+    }
+    /// Names of the components in the file where they are not the ids of the channels; empty otherwise. Names beyond the channels and
+    /// [`Shape::fill`] repeat the last channel.
+    fn names(&self, shape: &Shape<'_>) -> &'static [&'static str] {
+        let _ = shape;
+        &[]
     }
     /// What its readers call the components of a pixel, of which there are `count`, where the file has no names for channels.
     fn colours(&self, count: usize) -> &'static [&'static str] {

@@ -70,7 +70,7 @@ fn fault(fault: impl Into<String>) -> ReadError {
     ReadError::Fault { format: FORMAT, fault: fault.into() }
 }
 
-/// Reads an array of floats. The last axis of two or more is the channels; those before the width are stacked.
+/// Reads an array of floats, or of bytes and words as codes over [0, 1]. The last axis of two or more is the channels; those before the width are stacked.
 fn read(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
     let cut = || fault("the header is cut short");
     let byte = |at: usize| bytes.get(at).copied().map(usize::from).ok_or_else(cut);
@@ -88,7 +88,10 @@ fn read(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
         "<f2" => Storage::Half,
         "<f4" => Storage::Float,
         "<f8" => Storage::Double,
-        other => return Err(fault(format!("type {other} is not supported; <f2, <f4 and <f8 are"))),
+        // codes, as of a picture
+        "|u1" => Storage::Unorm8,
+        "<u2" => Storage::Unorm16,
+        other => return Err(fault(format!("type {other} is not supported; <f2, <f4, <f8, |u1 and <u2 are"))),
     };
     if value(header, "fortran_order")? != "False" {
         return Err(fault("arrays in Fortran order are not supported"));
@@ -103,11 +106,11 @@ fn read(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
     if data.len() != size {
         return Err(fault(format!("{} bytes of numbers, the shape tells of {size}", data.len())));
     }
-    let mut planes = texels::unpack(data, storage, channels, [0; 3], cancel);
+    let mut planes = texels::finish(texels::unpack(data, storage, channels, [0; 3], cancel), None);
     // an array has no colours
     let rename = |(c, p): (usize, &mut Plane)| p.name = format!("c{c}");
     planes.iter_mut().enumerate().for_each(rename);
-    Ok(Image { format: FORMAT, width, height, channels: planes, provenance: None })
+    Ok(Image { format: FORMAT, width, height, channels: planes, provenance: None, warnings: Vec::new() })
 }
 
 /// The text behind a key, up to the comma that ends it.

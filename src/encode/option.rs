@@ -9,6 +9,8 @@ use crate::grid::Grid;
 pub enum FileOption {
     /// `rgba`: four components a pixel, whatever the table has.
     Rgba,
+    /// `rgb`: three components a pixel, for three channels, where four are usual.
+    Rgb,
     /// `fill-zero`: components without channel are 0.
     FillZero,
     /// `fill-one`: components without channel are 1.
@@ -21,6 +23,10 @@ pub enum FileOption {
     Planar,
     /// `tiled`: tiles of 64 x 64 pixels instead of scan lines.
     Tiled,
+    /// `positional`: channels are called R, G, B (and A) by position, as loaders of colours want them.
+    Positional,
+    /// `y`: the one channel is called Y, as loaders of grey pictures want it.
+    Luminance,
     /// `untagged`: nothing is said of the colour space.
     Untagged,
     /// `zstd`: supercompressed with Zstandard.
@@ -30,12 +36,15 @@ pub enum FileOption {
 /// Every option.
 pub static FILE_OPTIONS: &[FileOption] = &[
     FileOption::Rgba,
+    FileOption::Rgb,
     FileOption::FillZero,
     FileOption::FillOne,
     FileOption::Layers,
     FileOption::Parts,
     FileOption::Planar,
     FileOption::Tiled,
+    FileOption::Positional,
+    FileOption::Luminance,
     FileOption::Untagged,
     FileOption::Zstd,
 ];
@@ -46,12 +55,15 @@ impl FileOption {
     pub const fn id(self) -> &'static str {
         match self {
             FileOption::Rgba => "rgba",
+            FileOption::Rgb => "rgb",
             FileOption::FillZero => "fill-zero",
             FileOption::FillOne => "fill-one",
             FileOption::Layers => "layers",
             FileOption::Parts => "parts",
             FileOption::Planar => "planar",
             FileOption::Tiled => "tiled",
+            FileOption::Positional => "positional",
+            FileOption::Luminance => "y",
             FileOption::Untagged => "untagged",
             FileOption::Zstd => "zstd",
         }
@@ -62,12 +74,19 @@ impl FileOption {
     pub const fn meaning(self) -> &'static str {
         match self {
             FileOption::Rgba => "four components a pixel; those without channel are 0, the fourth is 1",
+            FileOption::Rgb => {
+                "three components a pixel, for three channels: few graphics processors and no web engine read them"
+            }
             FileOption::FillZero => "components without channel are 0",
             FileOption::FillOne => "components without channel are 1",
             FileOption::Layers => "a third axis makes the layers of an array, not a volume",
             FileOption::Parts => "a third axis makes parts of the file, not slices below each other",
             FileOption::Planar => "one channel after another, not interleaved",
             FileOption::Tiled => "tiles of 64 x 64 pixels",
+            FileOption::Positional => {
+                "channels named R, G, B (A) by position; of two the third is 0, one is written three times"
+            }
+            FileOption::Luminance => "the one channel named Y",
             FileOption::Untagged => "no gamma chunk, by which browsers would convert the numbers",
             FileOption::Zstd => "supercompressed with Zstandard, level 19",
         }
@@ -153,13 +172,32 @@ impl Shape<'_> {
         if self.has(FileOption::FillZero) && self.has(FileOption::FillOne) {
             return Err(EncodeError::Conflict { a: "fill-zero", b: "fill-one" });
         }
+        if self.has(FileOption::Rgb) && self.has(FileOption::Rgba) {
+            return Err(EncodeError::Conflict { a: "rgb", b: "rgba" });
+        }
+        if self.has(FileOption::Rgb) && self.channels != 3 {
+            return Err(EncodeError::Axes { format, fault: "option rgb is for tables of three channels" });
+        }
+        if self.has(FileOption::Positional) && self.has(FileOption::Luminance) {
+            return Err(EncodeError::Conflict { a: "positional", b: "y" });
+        }
         let coupled = matches!(self.storage, Storage::Rgb9e5 | Storage::Rgbe | Storage::Rgbd)
             || self.storage.is_block();
-        if coupled && (self.has(FileOption::FillOne) || self.has(FileOption::Rgba)) {
-            let a = if self.has(FileOption::Rgba) { "rgba" } else { "fill-one" };
+        if coupled && [FileOption::FillOne, FileOption::Rgba, FileOption::Rgb].iter().any(|o| self.has(*o)) {
+            let a = match () {
+                () if self.has(FileOption::Rgba) => "rgba",
+                () if self.has(FileOption::Rgb) => "rgb",
+                () => "fill-one",
+            };
             return Err(EncodeError::Conflict { a, b: storage });
         }
-        let limit = encoder.most_channels().min(self.storage.most_channels().unwrap_or(usize::MAX));
+        let named = match () {
+            () if self.has(FileOption::Luminance) => 1,
+            () if self.has(FileOption::Positional) => 4,
+            () => usize::MAX,
+        };
+        let limit =
+            encoder.most_channels().min(named).min(self.storage.most_channels().unwrap_or(usize::MAX));
         if self.channels == 0 || self.channels > limit {
             return Err(EncodeError::Channels { format, storage, count: self.channels, limit });
         }

@@ -35,7 +35,7 @@ fn decode(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
     let (width, height, planes) = pixels(bytes, cancel)?;
     let provenance = text(bytes).map(Claim::parse);
     let channels = texels::finish(planes, provenance.as_ref());
-    Ok(Image { format: FORMAT, width, height, channels, provenance })
+    Ok(Image { format: FORMAT, width, height, channels, provenance, warnings: Vec::new() })
 }
 
 fn library(e: impl std::error::Error + Send + Sync + 'static) -> ReadError {

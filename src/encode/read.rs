@@ -31,6 +31,8 @@ pub struct Image {
     pub channels: Vec<Plane>,
     /// What the file says of itself, if it says anything.
     pub provenance: Option<Claim>,
+    /// What is wrong with a file that is read all the same, in words.
+    pub warnings: Vec<String>,
 }
 
 /// One channel.
@@ -163,6 +165,14 @@ impl Sample {
     #[must_use]
     pub fn ulp(self, value: f64, range: [f64; 2]) -> f64 {
         self.coding().ulp(value, range)
+    }
+
+    /// The code of a number that was read over [0, 1]; floats are their own code. Of blocks it need not be whole.
+    pub(super) fn encode(self, value: f64) -> f64 {
+        let storage = self.storage();
+        let code = storage.filter(|s| !s.is_block()).map(|s| s.code(value, [0.0, 1.0]));
+        let position = || storage.map(|s| s.position(value, [0.0, 1.0]));
+        code.or_else(position).and_then(Result::ok).unwrap_or(value)
     }
 
     /// The number that a code stands for; floats are their own code.

@@ -147,10 +147,9 @@ pub(super) fn unpack(
     cancel: &Cancel,
 ) -> Vec<Plane> {
     let sample = Sample::of(storage);
-    let names = if components == 1 { &["R"][..] } else { &["R", "G", "B", "A"][..] };
     let mut planes: Vec<Plane> = (0..components)
         .map(|c| Plane {
-            name: names.get(c).map_or_else(|| format!("c{c}"), |n| (*n).to_owned()),
+            name: component(c),
             sample,
             range: [0.0, 1.0],
             values: Vec::with_capacity(bytes.len() / size(storage, components).max(1)),
@@ -170,6 +169,11 @@ pub(super) fn unpack(
         }
     }
     planes
+}
+
+/// Name of a component: a colour, or its number.
+pub(super) fn component(c: usize) -> String {
+    ["R", "G", "B", "A"].get(c).map_or_else(|| format!("c{c}"), |n| (*n).to_owned())
 }
 
 /// One texel; the slice is of the right size.

@@ -165,6 +165,10 @@ pub struct Encoding {
     /// Values of the components of a pixel that follow the channels and hold none: `[0, 1]` for two channels as RGBA.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub fill: Vec<f64>,
+    /// Names of the components in the file, where they are not the ids of the channels: `[R, G, B]`, for two channels and one of
+    /// [`Encoding::fill`], or for one channel written three times.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub names: Vec<String>,
 }
 
 /// Errors of the reader's reconstruction, against fresh integrals between the texels.

@@ -182,6 +182,7 @@ pub(super) fn encode_output(
         storage: storage.id().to_owned(),
         largest_error: stored.largest_error.value,
         fill: shape.fill(encoder.components(&shape)),
+        names: encoder.names(&shape).iter().map(|n| (*n).to_owned()).collect(),
     };
     let provenance = Provenance {
         encoding: Some(encoding.clone()),

@@ -16,8 +16,7 @@ const LONGEST: usize = 64;
 /// Names that Windows keeps for devices, with any extension and in any case.
 const DEVICES: &[&str] = &["con", "prn", "aux", "nul"];
 
-/// File name of the manifest, which is written beside the tables.
-pub const MANIFEST: &str = "manifest.json";
+pub use crate::encode::beside::MANIFEST;
 
 /// What is wrong with the name of a table, if anything: it becomes the stem of file names.
 pub(super) fn table(name: &str) -> Option<Fault> {

@@ -46,6 +46,9 @@ fn image(lines: &mut Lines, d: &ImageDiff) {
     for n in &d.notes {
         lines.item("note", n);
     }
+    if !d.mapping.is_empty() {
+        lines.item("channels", &format!("compared {}", d.mapping.join(", ")));
+    }
     for c in &d.channels {
         let Some(w) = &c.worst else {
             lines.item(&c.name, "the same values");

@@ -15,6 +15,9 @@ pub fn inspect(name: &str, image: &Image) -> String {
     let mut lines = Lines::default();
     let channels = counted(image.channels.len(), "channel");
     lines.plain(&format!("{name}: {}, {} x {} pixels, {channels}", image.format, image.width, image.height));
+    for warning in &image.warnings {
+        lines.item("warning", warning);
+    }
     match &image.provenance {
         Some(Claim::Known(p)) => {
             for contradiction in image.contradictions() {
@@ -140,6 +143,9 @@ fn quality(lines: &mut Lines, p: &Provenance) {
     if let Some(e) = &p.encoding {
         lines
             .item("stored as", &format!("{}, rounding error at most {}", e.storage, number(e.largest_error)));
+        if !e.names.is_empty() {
+            lines.item("", &format!("channels are named {} in the file", e.names.join(", ")));
+        }
         if !e.fill.is_empty() {
             let fill = e.fill.iter().map(|v| number(*v)).collect::<Vec<_>>().join(", ");
             lines.item("", &format!("components without channel hold {fill}"));

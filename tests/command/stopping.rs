@@ -169,7 +169,7 @@ fn files_and_folders_stop() {
     std::fs::write(&path, b"nothing").unwrap();
     assert!(matches!(read_file_until(&set(), &path), Err(ReadError::Cancelled(Cancelled))));
     for (a, b) in [(path.as_path(), path.as_path()), (dir.path(), dir.path())] {
-        let stopped = diff_files::paths_until(&set(), a, b, Tolerance::default());
+        let stopped = diff_files::paths_until(&set(), a, b, &Tolerance::default().into());
         assert!(matches!(stopped, Err(DiffError::Cancelled(Cancelled))), "{stopped:?}");
     }
 }

@@ -12,7 +12,7 @@ const FORMATS: [(Storage, [Option<Format>; 4]); 12] = [
         [
             Some(Format::R16_SFLOAT),
             Some(Format::R16G16_SFLOAT),
-            Some(Format::R16G16B16_SFLOAT),
+            Some(Format::R16G16B16A16_SFLOAT),
             Some(Format::R16G16B16A16_SFLOAT),
         ],
     ),
@@ -21,7 +21,7 @@ const FORMATS: [(Storage, [Option<Format>; 4]); 12] = [
         [
             Some(Format::R32_SFLOAT),
             Some(Format::R32G32_SFLOAT),
-            Some(Format::R32G32B32_SFLOAT),
+            Some(Format::R32G32B32A32_SFLOAT),
             Some(Format::R32G32B32A32_SFLOAT),
         ],
     ),
@@ -30,7 +30,7 @@ const FORMATS: [(Storage, [Option<Format>; 4]); 12] = [
         [
             Some(Format::R8_UNORM),
             Some(Format::R8G8_UNORM),
-            Some(Format::R8G8B8_UNORM),
+            Some(Format::R8G8B8A8_UNORM),
             Some(Format::R8G8B8A8_UNORM),
         ],
     ),
@@ -39,7 +39,7 @@ const FORMATS: [(Storage, [Option<Format>; 4]); 12] = [
         [
             Some(Format::R16_UNORM),
             Some(Format::R16G16_UNORM),
-            Some(Format::R16G16B16_UNORM),
+            Some(Format::R16G16B16A16_UNORM),
             Some(Format::R16G16B16A16_UNORM),
         ],
     ),

@@ -1,7 +1,7 @@
 //! Tables of one to four axes and their files.
 
 use crate::sample;
-use brdfbake::encode::{EncodeError, FileOption, Label, Storage, encoder, quantise_table};
+use brdfbake::encode::{EncodeError, FileOption, Label, Shape, Storage, encoder, quantise_table};
 use brdfbake::grid::{Axis, Channel, Grid, Quantity, Table, Texel};
 
 /// A table with axes of these lengths and `channels` channels in (0, 1).
@@ -36,10 +36,16 @@ pub(crate) fn written(
     options: &[FileOption],
 ) -> Result<(Vec<u8>, Vec<f64>), EncodeError> {
     let rounded = quantise_table(table, storage).unwrap();
-    let provenance = sample::provenance(table, storage);
+    let mut provenance = sample::provenance(table, storage);
+    let encoder = encoder(container).unwrap();
+    let shape = Shape { grid: &table.grid, channels: table.channels.len(), storage, options };
+    if let Some(encoding) = &mut provenance.encoding {
+        encoding.fill = shape.fill(encoder.components(&shape));
+        encoding.names = encoder.names(&shape).iter().map(|n| (*n).to_owned()).collect();
+    }
     let json = serde_json::to_string(&provenance).unwrap();
     let label = Label { name: &provenance.name, identity: &provenance.recipe.hash, provenance_json: &json };
     let input = sample::input(table, &rounded, storage, options, label);
-    let bytes = encoder(container).unwrap().encode(&input)?;
+    let bytes = encoder.encode(&input)?;
     Ok((bytes, rounded.values))
 }

@@ -69,6 +69,7 @@ pub(crate) fn provenance(table: &Table, storage: Storage) -> Provenance {
             storage: storage.id().to_owned(),
             largest_error: quantise_table(table, storage).map_or(0.0, |q| q.largest_error.value),
             fill: Vec::new(),
+            names: Vec::new(),
         }),
         residuals: Vec::new(),
         reconstruction: None,

@@ -1,4 +1,5 @@
-//! Decodes the DDS files that `tests/foreign.rs` writes with the crates `ddsfile` and `image_dds`, and compares every texel.
+//! Decodes the DDS files that `tests/foreign.rs` writes with the crates `ddsfile` and `image_dds`, its OpenEXR files of positional names
+//! with the crate `image`, and compares every texel.
 //!
 //! ```sh
 //! BRDFBAKE_FOREIGN=foreign-out cargo test --test files -- --ignored write_
@@ -82,6 +83,25 @@ fn check(path: &Path, want: &Value) -> Result<&'static str, String> {
     Ok("every texel as expected")
 }
 
+/// The crate `image` knows OpenEXR of R, G, B and A only.
+fn check_exr(path: &Path, want: &Value) -> Result<&'static str, String> {
+    let picture = image::open(path).map_err(|e| e.to_string())?.into_rgba32f();
+    expect("width", picture.width().into(), want["width"].as_u64().unwrap_or(0))?;
+    expect("height", picture.height().into(), want["height"].as_u64().unwrap_or(0))?;
+    for (name, column) in want["channels"].as_object().ok_or("no channels")? {
+        let c = ["R", "G", "B", "A"].iter().position(|n| n == name).ok_or("a channel of another name")?;
+        for (i, (pixel, bits)) in picture.pixels().zip(column.as_array().ok_or("no values")?).enumerate() {
+            let bits =
+                u64::from_str_radix(bits.as_str().unwrap_or_default(), 16).map_err(|e| e.to_string())?;
+            let (got, want) = (f64::from(pixel.0[c]), f64::from_bits(bits));
+            if (got - want).abs() > 0.0 {
+                return Err(format!("{name}, pixel {i}: got {got}, expected {want}"));
+            }
+        }
+    }
+    Ok("every pixel as expected by the crate image")
+}
+
 fn main() -> ExitCode {
     let folder = std::env::args().nth(1).unwrap_or_default();
     let (mut files, mut decoded, mut failed) = (0, 0, 0);
@@ -91,8 +111,10 @@ fn main() -> ExitCode {
     };
     let mut paths: Vec<_> = entries.flatten().map(|e| e.path()).collect();
     paths.sort();
-    for path in paths.iter().filter(|p| p.extension().is_some_and(|e| e == "dds")) {
+    let positional = |p: &Path| p.to_string_lossy().ends_with(".positional.exr");
+    for path in paths.iter().filter(|p| p.extension().is_some_and(|e| e == "dds") || positional(p)) {
         let expected = std::fs::read(format!("{}.expected.json", path.display())).unwrap_or_default();
+        let check = if positional(path) { check_exr } else { check };
         let result =
             serde_json::from_slice(&expected).map_err(|e| e.to_string()).and_then(|want| check(path, &want));
         files += 1;
@@ -107,7 +129,7 @@ fn main() -> ExitCode {
             }
         }
     }
-    println!("{files} DDS files, {decoded} decoded, {failed} different");
+    println!("{files} DDS and EXR files, {decoded} decoded, {failed} different");
     if failed > 0 {
         ExitCode::from(1)
     } else if decoded == 0 {
