@@ -169,6 +169,7 @@ impl MapRequest {
     }
 }
 
+#[cfg(feature = "scene")]
 impl MapRequest {
     /// Can it be made?
     ///
