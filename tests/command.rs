@@ -4,6 +4,7 @@
 mod eval;
 mod messages;
 mod outside;
+mod report;
 #[cfg(unix)]
 mod signals;
 mod stopping;

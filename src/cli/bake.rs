@@ -4,8 +4,9 @@ use super::limits::Limits;
 use super::progress::{self, Format};
 use super::{Exit, Failure, engine, output, scene, scene_write, suggest};
 use crate::cancel::Cancel;
+use crate::pipeline::pages::Collector;
 use crate::pipeline::write_scene::Bake;
-use crate::pipeline::{self, PipelineError, Settings};
+use crate::pipeline::{self, Companion, PipelineError, Settings};
 use crate::plan::Plan;
 use crate::recipe::{self, LoadError};
 use std::path::PathBuf;
@@ -36,6 +37,12 @@ pub struct Args {
     out: PathBuf,
     #[command(flatten)]
     write: scene_write::SceneWrite,
+    /// Also write `report.html` into the output folder: each table with the errors of its texels, as a page.
+    #[arg(long)]
+    report: bool,
+    /// Tell in the report how long each table took.
+    #[arg(long, requires = "report")]
+    timings: bool,
     #[command(flatten)]
     limits: Limits,
     /// Print nothing but errors.
@@ -117,7 +124,9 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         return Ok(Exit::Done);
     }
     let reporter = progress::reporter(args.message_format, args.quiet, cancel);
-    let done = pipeline::run(&plan, &settings, cancel, reporter.progress());
+    let mut collector = args.report.then(|| Collector::new(args.timings));
+    let companion = collector.as_mut().map(|c| c as &mut dyn Companion);
+    let done = pipeline::run_with(&plan, &settings, cancel, reporter.progress(), companion);
     reporter.finish()?;
     match done {
         Ok(outcome) => {

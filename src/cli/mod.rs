@@ -23,6 +23,7 @@ pub mod output;
 pub mod plan;
 pub mod plot;
 pub mod progress;
+pub mod report;
 pub mod scene;
 mod scene_write;
 mod suggest;
@@ -59,6 +60,8 @@ enum Verb {
     Map(Box<map::Args>),
     /// Convert specular-glossiness materials of a glTF scene to metallic-roughness, with the error of each.
     Convert(convert::Args),
+    /// Write a page of an output folder: pictures of its tables and their errors, curves, spheres, laws, worst texels.
+    Report(report::Args),
     /// Check that an output folder holds what its manifest says.
     Verify(verify::Args),
     /// Compare a fresh bake with committed outputs, or commit them.
@@ -94,6 +97,7 @@ pub fn run(cli: Cli, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         Verb::Diff(args) => diff::run(&args, cancel),
         Verb::Map(args) => map::run(&args, cancel),
         Verb::Convert(args) => convert::run(&args, cancel),
+        Verb::Report(args) => report::run(&args, cancel),
         Verb::Verify(args) => verify::run(&args),
         Verb::Golden(args) => golden::run(&args, cancel),
         Verb::Eval(args) => eval::run(&args, cancel),

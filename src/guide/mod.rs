@@ -53,6 +53,7 @@ topics! {
     maps
     conventions
     accuracy
+    reports
     laws
     formulas
     numbers

@@ -4,7 +4,7 @@
 //! two bakes is told from a damaged file. Manifests of every version are read: only names, sizes and hashes are looked at.
 
 use super::transaction::{LOCK, STAGING, is_plain};
-use super::{MANIFEST, golden};
+use super::{MANIFEST, companion, golden};
 use crate::encode::atomic::HIDDEN;
 use crate::encode::read::{self, Claim};
 use crate::grid::Provenance;
@@ -290,7 +290,8 @@ fn foreign(folder: &Path, known: &[&str]) -> Result<Vec<Foreign>, AuditError> {
     for entry in fs::read_dir(folder).map_err(io)? {
         let entry = entry.map_err(io)?;
         let file = entry.file_name().to_string_lossy().into_owned();
-        let ours = golden::OWN.contains(&file.as_str()) || file.starts_with(HIDDEN);
+        let ours =
+            golden::OWN.contains(&file.as_str()) || companion::is_page(&file) || file.starts_with(HIDDEN);
         if !ours && !known.contains(&file.as_str()) && entry.path().is_file() {
             found.push(Foreign { origin: origin(&entry.path()), file });
         }

@@ -104,7 +104,7 @@ impl Baked {
         let readings = Readings::new(&self.planned, verified.table(), &cancel)?;
         let source = readings.source(&self.planned, verified.table(), &cancel);
         let file = self.planned.name();
-        match table::encode_output(&self.planned, output, &source, provenance, file, false)?.1 {
+        match table::encode_output(&self.planned, output, &source, provenance, file, false, None)?.1 {
             Written::File(bytes) => Ok(bytes),
             // a part of a file that others share: this table is alone
             Written::Part(_) => Err(PipelineError::Metadata {

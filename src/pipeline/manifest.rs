@@ -101,7 +101,8 @@ impl Manifest {
         let is_left = |name: &String| {
             super::transaction::is_plain(name) && !names.contains(name) && folder.join(name).is_file()
         };
-        let mut all: Vec<String> = listed.chain(old.stale).filter(is_left).collect();
+        let pages = super::companion::pages(folder);
+        let mut all: Vec<String> = listed.chain(old.stale).chain(pages).filter(is_left).collect();
         all.sort();
         all.dedup();
         all

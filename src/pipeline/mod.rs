@@ -5,6 +5,7 @@
 
 mod advice;
 pub mod audit;
+mod companion;
 pub mod cost;
 mod event;
 mod fit;
@@ -16,6 +17,8 @@ pub mod map;
 #[cfg(feature = "scene")]
 pub mod materials;
 pub mod memory;
+#[cfg(feature = "report")]
+pub mod pages;
 mod size;
 pub mod suggest;
 mod table;
@@ -27,6 +30,7 @@ pub mod write_scene;
 
 pub use crate::plan::MANIFEST;
 pub use event::{Event, Extremum, MapPlanEntry, PlanEntry, Progress, Silent};
+pub use companion::{Companion, Seen};
 pub use in_memory::{Baked, InMemoryError, bake, bake_until};
 pub use manifest::{FileRecord, Manifest, TableRecord};
 pub use threads::{MOST_THREADS, pool};
@@ -238,20 +242,38 @@ pub fn run(
     cancel: &Cancel,
     progress: &dyn Progress,
 ) -> Result<Outcome, PipelineError> {
+    run_with(plan, settings, cancel, progress, None)
+}
+
+/// [`run`], with files that somebody makes of the tables. They are part of the transaction.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_with(
+    plan: &Plan,
+    settings: &Settings,
+    cancel: &Cancel,
+    progress: &dyn Progress,
+    mut companion: Option<&mut dyn Companion>,
+) -> Result<Outcome, PipelineError> {
     let start = Instant::now();
     check(plan, settings)?;
     let pool = pool(settings.jobs)?;
     progress.event(&Event::plan(plan));
-    let mut files = begin(plan, settings, cancel, progress)?;
+    let mut names = plan.files();
+    names.extend(companion.iter().flat_map(|c| c.names(plan)));
+    let mut files = begin(&names, settings, cancel, progress)?;
     let mut gathered = gather::Gathered::new(plan);
     let mut tables = Vec::new();
     let mut findings = Vec::new();
     let mut doubts: Vec<Finding> = Vec::new();
     for (index, planned) in plan.tables.iter().enumerate() {
-        match pool
-            .install(|| table::make(plan, planned, index, gathered.is_shared(planned), cancel, progress))
-        {
+        let (shared, keep) = (gathered.is_shared(planned), companion.is_some());
+        match pool.install(|| table::make(plan, planned, index, shared, keep, cancel, progress)) {
             Ok(made) if findings.is_empty() => {
+                if let Some((companion, seen)) = companion.as_mut().zip(made.seen) {
+                    companion.table(&made.record, seen);
+                }
                 let doubtful = |f: &&Finding| settings.strict && f.result.is_doubt();
                 doubts.extend(made.warnings.iter().filter(doubtful).cloned());
                 gathered.take(index, made.files, cancel, &mut files)?;
@@ -278,9 +300,14 @@ pub fn run(
         }
         maps.push(made.entry);
     }
-    let stale = Manifest::stale(&settings.out, &plan.files());
-    let mut manifest = Manifest::new(plan, tables, maps, stale);
+    let mut manifest = Manifest::new(plan, tables, maps, Vec::new());
     manifest.set_sizes(|name| files.staged(name));
+    let extra = companion.map_or_else(Vec::new, |c| c.finish(&manifest));
+    let written = plan.files().into_iter().chain(extra.iter().map(|(name, _)| name.clone()));
+    manifest.stale = Manifest::stale(&settings.out, &written.collect::<Vec<_>>());
+    for (name, bytes) in &extra {
+        files.stage(name, bytes)?;
+    }
     let written = files.commit(&manifest.to_bytes())?;
     let outcome = Outcome { manifest, written: written.written, unchanged: written.unchanged };
     progress.event(&Event::summary(&outcome, start.elapsed().as_secs_f64()));
@@ -305,7 +332,7 @@ pub fn check(plan: &Plan, settings: &Settings) -> Result<(), PipelineError> {
 
 /// Locks the output folder.
 fn begin<'a>(
-    plan: &Plan,
+    names: &[String],
     settings: &Settings,
     cancel: &'a Cancel,
     progress: &dyn Progress,
@@ -313,7 +340,7 @@ fn begin<'a>(
     let (folder, timeout) = (settings.out.as_path(), settings.lock_timeout);
     let told = || progress.event(&Event::Waiting { folder, seconds: timeout.as_secs_f64() });
     let waiting = Waiting { timeout, told: &told };
-    let (files, recovered) = Transaction::begin(folder, &plan.files(), cancel, &waiting)?;
+    let (files, recovered) = Transaction::begin(folder, names, cancel, &waiting)?;
     if let Some(recovery) = recovered {
         progress.event(&Event::Recovered { folder, recovery });
     }

@@ -117,7 +117,7 @@ fn one(
         }
         (Reader::Shader(language), _) => language,
     };
-    let own = table::make(plan, planned, index, false, cancel, &Silent)?;
+    let own = table::make(plan, planned, index, false, false, cancel, &Silent)?;
     result.own = measured(&own, planned);
     let search = Search { planned, want, language, cancel };
     let output = planned.outputs.first().cloned().unwrap_or_else(Output::preset);
@@ -209,7 +209,7 @@ impl Search<'_> {
         let text = recipe::text("suggested", std::slice::from_ref(request));
         let plan = recipe::parse(&text, "suggested.toml").map_err(|e| self.fault(&e))?;
         let planned = plan.tables.first().ok_or_else(|| self.fault(&"no table"))?;
-        let made = table::make(&plan, planned, 0, false, self.cancel, &Silent)?;
+        let made = table::make(&plan, planned, 0, false, false, self.cancel, &Silent)?;
         let Some(size) = measured(&made, planned) else { return Ok(None) };
         let reached = if self.want.practical { size.practical.unwrap_or(size.whole) } else { size.whole };
         if reached[0] > self.want.error {

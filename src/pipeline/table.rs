@@ -1,6 +1,7 @@
 //! One table: bake, verify, round, compare between texels, encode in memory.
 
 use super::advice::advice;
+use super::companion::Seen;
 use super::event::{ChoiceEntry, ReconstructionEntry};
 use super::fit::{self, Fitted};
 use super::gather::{Part, Written};
@@ -23,6 +24,8 @@ const COMPARED: usize = 1 << 16;
 /// A table ready to be written.
 pub(super) struct Made {
     pub(super) record: TableRecord,
+    /// Its texels, for a companion that looks at them.
+    pub(super) seen: Option<Seen>,
     /// What was found that does not stop a bake.
     pub(super) warnings: Vec<Finding>,
     pub(super) files: Vec<(String, Written)>,
@@ -34,6 +37,7 @@ pub(super) fn make(
     planned: &PlannedTable,
     index: usize,
     shared: bool,
+    keep: bool,
     cancel: &Cancel,
     progress: &dyn Progress,
 ) -> Result<Made, PipelineError> {
@@ -64,18 +68,25 @@ pub(super) fn make(
             size: spec.grid.axes().iter().map(|a| a.len).collect(),
             files: Vec::new(),
         },
+        seen: None,
         warnings,
         files: Vec::new(),
     };
+    let mut stored = None;
     let names = planned.files();
     let readings = Readings::new(planned, verified.table(), cancel)?;
     for (output, file) in planned.outputs.iter().zip(names) {
         let source = readings.source(planned, verified.table(), cancel);
-        let (record, bytes) = encode_output(planned, output, &source, &provenance, &file, shared)?;
+        let kept = if keep && stored.is_none() { Some(&mut stored) } else { None };
+        let (record, bytes) = encode_output(planned, output, &source, &provenance, &file, shared, kept)?;
         made.record.files.push(record);
         made.files.push((file, bytes));
     }
     let check_seconds = start.elapsed().as_secs_f64();
+    if let Some(stored) = stored {
+        let table = verified.table().clone();
+        made.seen = Some(Seen { table, stored, seconds: [bake_seconds, check_seconds] });
+    }
     progress.event(&finished(planned, index, &made.record, bake_seconds, check_seconds));
     Ok(made)
 }
@@ -165,6 +176,7 @@ pub(super) fn encode_output(
     provenance: &Provenance,
     file: &str,
     shared: bool,
+    kept: Option<&mut Option<Vec<f64>>>,
 ) -> Result<(FileRecord, Written), PipelineError> {
     let table = source.table;
     let (name, label) = (planned.name().to_owned(), output.to_string());
@@ -192,6 +204,9 @@ pub(super) fn encode_output(
     };
     let json = serde_json::to_string(&provenance)
         .map_err(|e| PipelineError::Metadata { table: name.clone(), message: e.to_string() })?;
+    if let Some(kept) = kept {
+        *kept = Some(stored.values.clone());
+    }
     let as_read = source.probe.and_then(|p| p.measure_without_offset(&stored.values));
     let record = |bytes: &[u8]| FileRecord {
         file: file.to_owned(),

@@ -8,6 +8,8 @@ pub mod diff;
 pub mod difference;
 pub mod inspect;
 mod inspect_map;
+#[cfg(feature = "report")]
+pub mod page;
 pub mod plot;
 pub mod recognise;
 pub mod text;

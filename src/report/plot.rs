@@ -28,7 +28,8 @@ const MARGIN: f64 = 40.0;
 /// Points on a curve.
 const STEPS: u32 = 1440;
 
-const COLOURS: [[u8; 3]; 6] =
+/// Colours that differ for every eye: Okabe and Ito, Color Universal Design (2008).
+pub(super) const COLOURS: [[u8; 3]; 6] =
     [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [230, 159, 0], [86, 180, 233]];
 const GREY: [u8; 3] = [176, 176, 176];
 
@@ -250,10 +251,10 @@ fn pixel(v: f64) -> i64 {
     v.floor() as i64
 }
 
-fn hex([r, g, b]: [u8; 3]) -> String {
+pub(super) fn hex([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

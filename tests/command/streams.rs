@@ -46,7 +46,7 @@ const PRINTING: &[&[&str]] = &[
 ];
 
 /// Verbs without data: what they have to say goes to stderr.
-const SILENT: &[&str] = &["plot"];
+const SILENT: &[&str] = &["plot", "report"];
 
 /// A folder with what the commands read.
 fn prepared() -> tempfile::TempDir {

@@ -67,7 +67,7 @@ function serve(find) {
     return new Promise((done) => server.listen(0, '127.0.0.1', () => done(server)));
 }
 
-/** Calls `use(open, version)`; `open(path)` is a page. Faults of a page end the run. */
+/** Calls `use(open, version, faults)`; `open(path)` is a page that is ready. What `strict` pages say on the console is a fault, whatever it is. */
 export async function withBrowser(find, use) {
     const { chromium: driver } = require(packageFolder('playwright-core'));
     const executablePath = chromium();
@@ -76,13 +76,13 @@ export async function withBrowser(find, use) {
     const context = await driver.launchPersistentContext(profile, { executablePath, args: FLAGS, headless: true, ignoreDefaultArgs: ['--headless'] });
     const faults = [];
     try {
-        const open = async (path) => {
+        const open = async (path, ready = 'window.ready === true', strict = false) => {
             const page = await context.newPage();
             page.setDefaultTimeout(120_000);
             page.on('pageerror', (e) => faults.push(`${path}: ${e.message}`));
-            page.on('console', (m) => m.type() === 'error' && faults.push(`${path}: ${m.text()} ${m.location().url}`));
+            page.on('console', (m) => (strict || m.type() === 'error') && faults.push(`${path}: ${m.text()} ${m.location().url}`));
             await page.goto(`http://127.0.0.1:${server.address().port}${path}`);
-            await page.waitForFunction('window.ready === true').catch((e) => {
+            await page.waitForFunction(ready).catch((e) => {
                 throw new Error(`${e.message}; ${faults.join('; ')}`);
             });
             return page;
