@@ -4,6 +4,7 @@
 mod eval;
 mod messages;
 mod outside;
+mod preview;
 mod report;
 #[cfg(unix)]
 mod signals;

@@ -7,11 +7,16 @@ use crate::recipe::{self, ENGINES, Engine};
 
 /// The engine of this id and its plan.
 pub(super) fn plan(id: &str) -> Result<(&'static Engine, Plan), Failure> {
-    let Some(engine) = recipe::engine(id) else {
-        let ids: Vec<&str> = ENGINES.iter().map(|e| e.id).collect();
-        return Err(Failure::input(format!("no engine `{id}`{}", crate::math::nearest::offer(id, ids))));
-    };
+    let engine = find(id)?;
     Ok((engine, engine.plan().map_err(Failure::input)?))
+}
+
+/// The engine of this id.
+pub(super) fn find(id: &str) -> Result<&'static Engine, Failure> {
+    recipe::engine(id).ok_or_else(|| {
+        let ids: Vec<&str> = ENGINES.iter().map(|e| e.id).collect();
+        Failure::input(format!("no engine `{id}`{}", crate::math::nearest::offer(id, ids)))
+    })
 }
 
 /// One line a table: which file it replaces, and both errors as the engine reads them.

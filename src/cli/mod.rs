@@ -22,6 +22,7 @@ mod map_options;
 pub mod output;
 pub mod plan;
 pub mod plot;
+pub mod preview;
 pub mod progress;
 pub mod report;
 pub mod scene;
@@ -60,6 +61,8 @@ enum Verb {
     Map(Box<map::Args>),
     /// Convert specular-glossiness materials of a glTF scene to metallic-roughness, with the error of each.
     Convert(convert::Args),
+    /// Shade spheres by integration and by baked tables, beside each other: a row over roughness, or the materials of a glTF file.
+    Preview(preview::Args),
     /// Write a page of an output folder: pictures of its tables and their errors, curves, spheres, laws, worst texels.
     Report(report::Args),
     /// Check that an output folder holds what its manifest says.
@@ -97,6 +100,7 @@ pub fn run(cli: Cli, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         Verb::Diff(args) => diff::run(&args, cancel),
         Verb::Map(args) => map::run(&args, cancel),
         Verb::Convert(args) => convert::run(&args, cancel),
+        Verb::Preview(args) => preview::run(&args, cancel),
         Verb::Report(args) => report::run(&args, cancel),
         Verb::Verify(args) => verify::run(&args),
         Verb::Golden(args) => golden::run(&args, cancel),

@@ -93,24 +93,43 @@ impl Baked {
         &self.checked.warnings
     }
 
+    /// The numbers that a file holds, `[texel][channel]`: rounded, and fitted where the request says so.
+    ///
+    /// # Errors
+    /// As [`Baked::encode`].
+    pub fn stored(&self, output: &Output) -> Result<Vec<f64>, PipelineError> {
+        let mut stored = None;
+        self.written(output, Some(&mut stored))?;
+        Ok(stored.unwrap_or_default())
+    }
+
     /// The bytes of a file.
     ///
     /// # Errors
     /// [`PipelineError::Range`] where the storage cannot hold a value, [`PipelineError::Encode`] where the container cannot hold
     /// the table.
     pub fn encode(&self, output: &Output) -> Result<Vec<u8>, PipelineError> {
+        match self.written(output, None)? {
+            Written::File(bytes) => Ok(bytes),
+            // a part of a file that others share: this table is alone
+            Written::Part(_) => Err(PipelineError::Metadata {
+                table: self.planned.name().to_owned(),
+                message: "a table in memory has no file to share".to_owned(),
+            }),
+        }
+    }
+
+    fn written(
+        &self,
+        output: &Output,
+        kept: Option<&mut Option<Vec<f64>>>,
+    ) -> Result<Written, PipelineError> {
         let cancel = Cancel::new();
         let Checked { verified, provenance, .. } = &self.checked;
         let readings = Readings::new(&self.planned, verified.table(), &cancel)?;
         let source = readings.source(&self.planned, verified.table(), &cancel);
         let file = self.planned.name();
-        match table::encode_output(&self.planned, output, &source, provenance, file, false, None)?.1 {
-            Written::File(bytes) => Ok(bytes),
-            // a part of a file that others share: this table is alone
-            Written::Part(_) => Err(PipelineError::Metadata {
-                table: file.to_owned(),
-                message: "a table in memory has no file to share".to_owned(),
-            }),
-        }
+        let made = table::encode_output(&self.planned, output, &source, provenance, file, false, kept)?;
+        Ok(made.1)
     }
 }

@@ -19,6 +19,8 @@ pub mod materials;
 pub mod memory;
 #[cfg(feature = "report")]
 pub mod pages;
+#[cfg(all(feature = "report", feature = "scene"))]
+pub mod preview;
 mod size;
 pub mod suggest;
 mod table;
@@ -29,8 +31,8 @@ pub mod transaction;
 pub mod write_scene;
 
 pub use crate::plan::MANIFEST;
-pub use event::{Event, Extremum, MapPlanEntry, PlanEntry, Progress, Silent};
 pub use companion::{Companion, Seen};
+pub use event::{Event, Extremum, MapPlanEntry, PlanEntry, Progress, Silent};
 pub use in_memory::{Baked, InMemoryError, bake, bake_until};
 pub use manifest::{FileRecord, Manifest, TableRecord};
 pub use threads::{MOST_THREADS, pool};

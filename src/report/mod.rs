@@ -12,6 +12,7 @@ mod inspect_map;
 pub mod page;
 pub mod plot;
 pub mod recognise;
+pub mod split;
 pub mod text;
 
 pub use diff::diff;

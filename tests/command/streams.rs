@@ -37,6 +37,8 @@ const PRINTING: &[&[&str]] = &[
     &["laws", "lambert", "--json"],
     &["fit", "-t", "fresnel-dielectric", "-d", "1", "--form", "polynomial"],
     &["map", "--normal", "tests/footprints/normal.png", "--json", "-o", "DIR/maps"],
+    &["preview", "--size", "8", "--roughness", "0.5", "-o", "DIR/preview.png"],
+    &["preview", "--size", "8", "--roughness", "0.5", "-o", "DIR/preview.exr", "--json"],
     &["guide", "axes"],
     &["list", "models"],
     &["list", "models", "--json"],

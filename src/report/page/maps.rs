@@ -34,8 +34,11 @@ pub(super) fn maps(view: &View, texels: &Texels, shown: &Shown) -> Markup {
             output.read aria-live="polite" { "No texel chosen." }
             @if !shown.is_whole() {
                 p.note {
-                    "The table is too large to show whole: a pixel is " (step_x) " x " (step_y) " texels, with the value of the first and \
-                     the largest error of them; " (shown.slices.len()) " slices are shown, that of the worst texel among them."
+                    "Not all of the table is shown. "
+                    @if [step_x, step_y] != [1, 1] {
+                        "A pixel is " (step_x) " x " (step_y) " texels, with the value of the first and the largest error of them. "
+                    }
+                    @if texels.grid.axes().len() > 2 { (shown.slices.len()) " slices, that of the worst texel among them." }
                 }
             }
             @for channel in 0..n {

@@ -6,49 +6,12 @@ use crate::grid::axis::count;
 use crate::grid::{Grid, Table};
 use crate::math::figures::significant;
 use crate::models;
+use crate::report::split::Split;
 use maud::{Markup, html};
 
 /// Spheres of a row, and the radius of one in pixels.
 const SPHERES: usize = 6;
 const RADIUS: usize = 40;
-
-/// How the channels give the albedo of a metal of a reflectance at normal incidence; the roles are those of the files.
-#[derive(Debug, Clone, Copy)]
-enum Reading {
-    /// A channel is the white albedo.
-    White(usize),
-    /// Parts with weights 1 - Fc and Fc.
-    ScaleBias(usize, usize),
-    /// Parts with weights 1 and Fc.
-    OneSchlick(usize, usize),
-}
-
-impl Reading {
-    fn of(view: &View) -> Option<Reading> {
-        let role = |r: &str| view.provenance.channels.iter().position(|c| c.role == r);
-        let schlick = role("split part, Schlick weight");
-        let scale = role("split part, complement of the Schlick weight");
-        let one = role("split part, weight 1");
-        match (scale, one, schlick) {
-            (Some(scale), _, Some(bias)) => Some(Reading::ScaleBias(scale, bias)),
-            (_, Some(one), Some(schlick)) => Some(Reading::OneSchlick(one, schlick)),
-            _ => role("albedo").or_else(|| role("reflected albedo")).map(Reading::White),
-        }
-    }
-
-    /// The albedo at F0, F90 = 1, and the white one.
-    fn albedo(self, values: &[f64], f0: f64) -> [f64; 2] {
-        match self {
-            Reading::White(e) => [values[e], values[e]],
-            Reading::ScaleBias(s, b) => [f0 * values[s] + values[b], values[s] + values[b]],
-            Reading::OneSchlick(one, fc) => [f0 * (values[one] - values[fc]) + values[fc], values[one]],
-        }
-    }
-
-    fn takes_f0(self) -> bool {
-        !matches!(self, Reading::White(_))
-    }
-}
 
 /// A row of spheres.
 struct Row {
@@ -66,7 +29,7 @@ const ROWS: [Row; 4] = [
 
 /// Rows of spheres, if the table is one that shades them.
 pub(super) fn spheres(view: &View, texels: &Texels) -> Option<Markup> {
-    let reading = Reading::of(view)?;
+    let reading = Split::of(&view.provenance.channels)?;
     let grid = &texels.grid;
     let mu = grid.axes().iter().position(|a| a.quantity.base_id() == "mu")?;
     let width = grid.axes().iter().position(|a| a.quantity.base_id() == "alpha")?;
@@ -102,8 +65,9 @@ pub(super) fn spheres(view: &View, texels: &Texels) -> Option<Markup> {
     })
 }
 
-fn shade(reading: Reading, row: &Row, values: &[f64]) -> f64 {
-    let [e, white] = reading.albedo(values, row.f0);
+fn shade(reading: Split, row: &Row, values: &[f64]) -> f64 {
+    let [scale, bias] = reading.scale_bias(values);
+    let [e, white] = [row.f0 * scale + bias, scale + bias];
     if row.compensated && white > 0.0 { e * (1.0 + row.f0 * (1.0 / white - 1.0)) } else { e }
 }
 
@@ -132,7 +96,7 @@ fn draw(
                 let v = shade(&values);
                 sum += v;
                 pixels += 1;
-                codes[(y * roughness.len() + n) * size + x] = srgb(v);
+                codes[(y * roughness.len() + n) * size + x] = crate::math::srgb::code(v);
             }
         }
         means.push(sum / count(pixels.max(1)));
@@ -156,12 +120,4 @@ fn point(
         }
     };
     grid.point(&(0..grid.axes().len()).map(value).collect::<Vec<_>>())
-}
-
-/// The sRGB code of linear light (IEC 61966-2-1).
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in [0, 255] by the clamp")]
-fn srgb(v: f64) -> u8 {
-    let v = v.clamp(0.0, 1.0);
-    let code = if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * libm::pow(v, 1.0 / 2.4) - 0.055 };
-    (255.0 * code).round() as u8
 }

@@ -1,0 +1,259 @@
+//! Spheres under a small sky and a panel of light: once integrated, once as a shader shades them with baked tables.
+//!
+//! Both are the same shading model, that of three.js: the metallic-roughness material of glTF with GGX, single scattering, plus the
+//! light that scatters on between the facets (Fdez-Aguera 2019), whose share is `F_ms E_ms` of the mean irradiance. They differ in how
+//! the integrals are done: by rules that converge, or by tables and a prefiltered environment. A third picture has the integrals of the
+//! tables done and all else as in the shader: what it differs from the second by is the table alone.
+
+mod environment;
+mod picture;
+mod shader;
+mod tables;
+mod truth;
+
+pub use environment::{Bands, Panel, Sky};
+pub use picture::{exr, png};
+pub use shader::{Style, Tables};
+pub use tables::{PreviewError, materials, tables_of};
+
+use crate::cancel::{Cancel, Cancelled};
+use crate::grid::axis::count;
+use crate::math::srgb;
+use crate::models::ParamError;
+use glam::{DMat3, DVec3};
+use rayon::prelude::*;
+use serde::Serialize;
+use truth::Truth;
+
+/// Mean of the Schlick factor over the hemisphere, 1/21, as three.js has it.
+const MEAN_SCHLICK: f64 = 0.047619;
+/// Drawn directions of a preview at most, for the panel.
+const DRAWS: usize = 1 << 26;
+
+/// A sphere of one material.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Surface {
+    /// What it is called.
+    pub name: String,
+    /// Linear base colour.
+    pub base: [f64; 3],
+    /// From dielectric to metal.
+    pub metallic: f64,
+    /// Perceptual roughness.
+    pub roughness: f64,
+    /// Reflectance of the dielectric at normal incidence.
+    pub f0: f64,
+}
+
+/// What is to be seen.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// Spheres, from the left.
+    pub surfaces: Vec<Surface>,
+    /// The sky.
+    pub sky: Sky,
+    /// The panel, if there is one.
+    pub panel: Option<Panel>,
+    /// Diameter of a sphere in pixels.
+    pub size: usize,
+}
+
+/// Rows of pixels from the top, the spheres beside each other; linear red, green, blue, NaN outside.
+#[derive(Debug, Clone)]
+pub struct Preview {
+    /// Diameter of a sphere.
+    pub size: usize,
+    /// By integration.
+    pub integrated: Vec<[f64; 3]>,
+    /// By the tables.
+    pub read: Vec<[f64; 3]>,
+    /// Each sphere in numbers.
+    pub spheres: Vec<Numbers>,
+}
+
+/// How far the two are apart.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Numbers {
+    /// The sphere.
+    #[serde(flatten)]
+    pub surface: Surface,
+    /// Root of the mean square over pixels and colours, in codes of 8-bit sRGB (of 255).
+    pub rmse_codes: f64,
+    /// The largest, linear.
+    pub largest: f64,
+    /// The same that the table alone is at fault for.
+    pub table_rmse_codes: f64,
+    /// Largest that the table alone is at fault for, linear.
+    pub table_largest: f64,
+    /// What the integrated picture may be off by itself: moments of the sky, and the mean over the pixels for the panel; linear.
+    pub own_error: f64,
+}
+
+/// A pixel: integrated, read, read with exact integrals in place of the table, and what the first may be off by.
+type Pixel = ([f64; 3], [f64; 3], [f64; 3], f64);
+
+/// Shades the spheres.
+///
+/// # Errors
+/// [`ParamError`] for a roughness that the model refuses, [`Cancelled`].
+pub fn render(
+    scene: &Scene,
+    tables: &Tables,
+    style: &Style,
+    cancel: &Cancel,
+) -> Result<Preview, PreviewError> {
+    let (n, size) = (scene.surfaces.len(), scene.size);
+    let mut preview = Preview {
+        size,
+        integrated: vec![[f64::NAN; 3]; n * size * size],
+        read: vec![[f64::NAN; 3]; n * size * size],
+        spheres: Vec::new(),
+    };
+    let draws =
+        u32::try_from((DRAWS / (n * size * size).max(1)).next_power_of_two().clamp(64, 4096)).unwrap_or(64);
+    for (s, surface) in scene.surfaces.iter().enumerate() {
+        let shaded = Shaded::new(surface, style)?;
+        let rows: Vec<Vec<Option<Pixel>>> = (0..size)
+            .into_par_iter()
+            .map(|y| {
+                cancel.check()?;
+                Ok((0..size).map(|x| shaded.pixel(scene, tables, style, [x, y], draws)).collect())
+            })
+            .collect::<Result<_, Cancelled>>()?;
+        let mut sums = Sums::default();
+        for (y, row) in rows.iter().enumerate() {
+            for (x, pixel) in row.iter().enumerate() {
+                let Some((integrated, read, exact, error)) = pixel else { continue };
+                let at = y * n * size + s * size + x;
+                (preview.integrated[at], preview.read[at]) = (*integrated, *read);
+                sums.add(integrated, read, exact, *error);
+            }
+        }
+        preview.spheres.push(sums.numbers(surface, shaded.truth.error));
+    }
+    Ok(preview)
+}
+
+#[derive(Default)]
+struct Sums {
+    pixels: f64,
+    squares: [f64; 2],
+    largest: [f64; 2],
+    error: f64,
+}
+
+impl Sums {
+    fn add(&mut self, integrated: &[f64; 3], read: &[f64; 3], exact: &[f64; 3], error: f64) {
+        self.pixels += 1.0;
+        self.error += error;
+        for (i, other) in [integrated, exact].into_iter().enumerate() {
+            for (a, b) in read.iter().zip(other) {
+                let codes = f64::from(srgb::code(*a)) - f64::from(srgb::code(*b));
+                self.squares[i] += codes * codes;
+                self.largest[i] = self.largest[i].max((a - b).abs());
+            }
+        }
+    }
+
+    fn numbers(&self, surface: &Surface, moments: f64) -> Numbers {
+        let rmse = |i: usize| (self.squares[i] / (3.0 * self.pixels).max(1.0)).sqrt();
+        Numbers {
+            surface: surface.clone(),
+            rmse_codes: rmse(0),
+            largest: self.largest[0],
+            table_rmse_codes: rmse(1),
+            table_largest: self.largest[1],
+            own_error: moments + self.error / self.pixels.max(1.0),
+        }
+    }
+}
+
+/// A surface with its lobe.
+struct Shaded<'a> {
+    surface: &'a Surface,
+    roughness: f64,
+    bands: Bands,
+    truth: Truth,
+}
+
+/// The light of a lobe and of a diffuse surface at a pixel.
+struct Light {
+    /// Radiance that the lobe reflects where F0 is 1 and where it is 0, of the sky.
+    sky: [[f64; 3]; 2],
+    /// The same of the panel of radiance 1.
+    panel: [f64; 2],
+    /// Irradiance over pi of the sky; of the panel of radiance 1.
+    diffuse: ([f64; 3], f64),
+}
+
+impl<'a> Shaded<'a> {
+    fn new(surface: &'a Surface, style: &Style) -> Result<Shaded<'a>, ParamError> {
+        let roughness = surface.roughness.clamp(style.least_roughness.max(0.02), 1.0);
+        Ok(Shaded { surface, roughness, bands: style.bands(roughness), truth: Truth::new(roughness)? })
+    }
+
+    fn pixel(
+        &self,
+        scene: &Scene,
+        tables: &Tables,
+        style: &Style,
+        at: [usize; 2],
+        draws: u32,
+    ) -> Option<Pixel> {
+        let radius = 0.5 * count(scene.size);
+        let [x, y] = at.map(|v| (count(v) + 0.5) / radius - 1.0);
+        let z2 = 1.0 - x * x - y * y;
+        let normal = (z2 > 0.0).then(|| DVec3::new(x, -y, z2.sqrt()))?;
+        let (view, mu) = (DVec3::Z, normal.z);
+        let tangent = (view - normal * mu).try_normalize().unwrap_or(DVec3::X);
+        let frame = DMat3::from_cols(tangent, normal.cross(tangent), normal);
+        let panel = scene.panel.as_ref();
+        let lookup = tables.look(style, panel, &frame, mu, self.roughness);
+        let moments = self.truth.moments(mu);
+        let exact = moments.map(|m| m[0]);
+        let irradiance = scene.sky.about(normal, Bands::COSINE);
+        let radiance = scene.sky.about(style.direction(view, normal, self.roughness), self.bands);
+        let read = |split: [f64; 2], lobe: [f64; 2]| {
+            let sky = split.map(|s| radiance.map(|r| r * s));
+            let form = panel.map_or(0.0, |p| shader::diffuse(style, p, &frame));
+            self.shade(split, &Light { sky, panel: lobe, diffuse: (irradiance, form) }, scene)
+        };
+        let seed = u32::try_from(at[0] * 65_536 + at[1]).unwrap_or(0);
+        let (lobe, error) = panel.map_or(([0.0; 2], 0.0), |p| self.truth.panel(p, &frame, mu, draws, seed));
+        let form = panel.map_or(0.0, |p| shader::diffuse(&Style { three: false, ..*style }, p, &frame));
+        let light = Light {
+            sky: self.truth.sky(&scene.sky, &frame, &moments),
+            panel: lobe,
+            diffuse: (irradiance, form),
+        };
+        let integrated = self.shade(exact, &light, scene);
+        let brightest = panel.map_or(0.0, |p| p.radiance.iter().copied().fold(0.0, f64::max));
+        Some((integrated, read(lookup.split, lookup.panel), read(exact, lookup.panel), error * brightest))
+    }
+
+    /// The shading model, from the integrals of the lobe and the light.
+    fn shade(&self, [scale, bias]: [f64; 2], light: &Light, scene: &Scene) -> [f64; 3] {
+        let s = self.surface;
+        let missing = 1.0 - (scale + bias);
+        // albedo of single scattering, and of what scatters on
+        let scatter = |f0: f64| {
+            let single = f0 * scale + bias;
+            let average = f0 + (1.0 - f0) * MEAN_SCHLICK;
+            [single, single * average / (1.0 - missing * average) * missing]
+        };
+        let dielectric = scatter(s.f0);
+        let mixed = |a: f64, b: f64| a + s.metallic * (b - a);
+        [0, 1, 2].map(|c| {
+            let metal = scatter(s.base[c]);
+            let f0 = mixed(s.f0, s.base[c]);
+            let (irradiance, form) = (light.diffuse.0[c], light.diffuse.1);
+            let body = s.base[c] * (1.0 - s.metallic);
+            let sky = f0 * light.sky[0][c]
+                + light.sky[1][c]
+                + mixed(dielectric[1], metal[1]) * irradiance
+                + body * (1.0 - dielectric[0] - dielectric[1]) * irradiance;
+            let shining = scene.panel.map_or(0.0, |p| p.radiance[c]);
+            sky + shining * (f0 * light.panel[0] + light.panel[1] + body * form)
+        })
+    }
+}

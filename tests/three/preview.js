@@ -1,0 +1,74 @@
+// The scene of `brdfbake preview` in three.js: a sphere of radius 1, seen without perspective from +z, under the built-in sky or a
+// furnace, with or without the panel. The sky and the panel are those of src/pipeline/preview/environment.rs.
+
+import * as THREE from 'three';
+import { RectAreaLightUniformsLib } from './three/examples/jsm/lights/RectAreaLightUniformsLib.js';
+
+const renderer = new THREE.WebGLRenderer({ antialias: false });
+renderer.toneMapping = THREE.NoToneMapping;
+renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+RectAreaLightUniformsLib.init();
+
+const SKY = /* glsl */ `
+    vec3 sky(vec3 w) {
+        float up = w.y, sun = dot(w, vec3(0.6, 0.48, 0.64));
+        return vec3(0.42, 0.45, 0.51) + vec3(0.1, 0.13, 0.2) * up + vec3(0.16, 0.12, 0.05) * sun + vec3(0.24, 0.18, 0.1) * (sun * sun - 1.0 / 3.0);
+    }`;
+
+function environment(furnace) {
+    const material = new THREE.ShaderMaterial({
+        side: THREE.BackSide,
+        vertexShader: 'varying vec3 along; void main() { along = position; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }',
+        fragmentShader: `varying vec3 along; ${SKY} void main() { gl_FragColor = vec4(${furnace ? 'vec3(1.0)' : 'sky(normalize(along))'}, 1.0); }`,
+    });
+    const scene = new THREE.Scene();
+    scene.add(new THREE.Mesh(new THREE.BoxGeometry(10, 10, 10), material));
+    return new THREE.PMREMGenerator(renderer).fromScene(scene).texture;
+}
+
+/** Linear red, green, blue and coverage of every pixel, rows from the top, of each sphere. */
+window.spheres = ({ size, surfaces, furnace, panel }) => {
+    const texture = environment(furnace);
+    const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 10);
+    camera.position.z = 5;
+    const geometry = new THREE.IcosahedronGeometry(1, 63).toNonIndexed();
+    geometry.computeVertexNormals();
+    const target = new THREE.WebGLRenderTarget(size, size, { type: THREE.FloatType });
+    return surfaces.map(({ base, metallic, roughness }) => {
+        const scene = new THREE.Scene();
+        scene.environment = texture;
+        const material = new THREE.MeshStandardMaterial({ metalness: metallic, roughness });
+        material.color.setRGB(...base, THREE.LinearSRGBColorSpace);
+        scene.add(new THREE.Mesh(geometry, material));
+        if (panel) {
+            const light = new THREE.RectAreaLight(0xffffff, 1, 2.4, 1.6);
+            light.color.setRGB(1.5, 1.4, 1.2, THREE.LinearSRGBColorSpace);
+            light.position.set(-2, 1.6, 2.4);
+            light.lookAt(0, 0, 0);
+            scene.add(light);
+        }
+        renderer.setRenderTarget(target);
+        renderer.setClearColor(0, 0);
+        renderer.clear();
+        renderer.render(scene, camera);
+        const all = new Float32Array(4 * size * size);
+        renderer.readRenderTargetPixels(target, 0, 0, size, size, all);
+        renderer.setRenderTarget(null);
+        const rows = Array.from({ length: size }, (_, y) => Array.from(all.subarray(4 * size * (size - 1 - y), 4 * size * (size - y))));
+        return rows.flat();
+    });
+};
+
+/** The pixels of a PNG: width, height, RGBA. */
+window.pixels = async (url) => {
+    const image = new Image();
+    image.src = url;
+    await image.decode();
+    const canvas = document.createElement('canvas');
+    [canvas.width, canvas.height] = [image.width, image.height];
+    const context = canvas.getContext('2d', { colorSpace: 'srgb' });
+    context.drawImage(image, 0, 0);
+    return { width: image.width, height: image.height, data: Array.from(context.getImageData(0, 0, image.width, image.height).data) };
+};
+
+window.ready = true;
