@@ -33,7 +33,7 @@ use std::sync::{Mutex, PoisonError};
 pub struct Built {
     /// What was written.
     pub outcome: Outcome,
-    /// What Cargo needs to know, a line each: run again when the recipe changes, and a warning for each law that could not be
+    /// What Cargo needs to know, a line each: run again when the recipe or an image of its maps changes, and a warning for each law that could not be
     /// checked. The library prints nothing: the build script does.
     pub lines: Vec<String>,
 }
@@ -72,7 +72,9 @@ pub fn recipe(recipe: impl AsRef<Path>, out: impl AsRef<Path>) -> Result<Built, 
     let plan = load(recipe)?;
     let warnings = Warnings::default();
     let outcome = run(&plan, &Settings::new(out.as_ref()), &Cancel::new(), &warnings)?;
-    let mut lines = vec![format!("cargo::rerun-if-changed={}", recipe.display())];
+    let images = plan.maps.iter().flat_map(|m| m.asked.files_read());
+    let read = std::iter::once(recipe.to_owned()).chain(images);
+    let mut lines: Vec<String> = read.map(|p| format!("cargo::rerun-if-changed={}", p.display())).collect();
     lines.extend(warnings.0.into_inner().unwrap_or_else(PoisonError::into_inner));
     Ok(Built { outcome, lines })
 }

@@ -1,5 +1,6 @@
 //! `brdfbake bake`.
 
+use super::build_step::BuildStep;
 use super::limits::Limits;
 use super::progress::{self, Format};
 use super::{Exit, Failure, engine, output, scene, scene_write, suggest};
@@ -43,6 +44,8 @@ pub struct Args {
     /// Tell in the report how long each table took.
     #[arg(long, requires = "report")]
     timings: bool,
+    #[command(flatten)]
+    step: BuildStep,
     #[command(flatten)]
     limits: Limits,
     /// Print nothing but errors.
@@ -118,6 +121,9 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         (entry, job.plan)
     };
     let settings = args.settings();
+    if let Some(exit) = args.step.check(&plan, &args.out)? {
+        return Ok(exit);
+    }
     if args.dry_run {
         pipeline::check(&plan, &settings)?;
         output::data(&plan.files().join("\n"))?;
@@ -136,6 +142,7 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
             let any = !outcome.manifest.tables.is_empty() || !outcome.manifest.maps.is_empty();
             let bake = any.then_some(Bake { manifest: &outcome.manifest, folder: &args.out });
             scene_write::run(&written, bake, &settings, cancel, args.talks())?;
+            args.step.done(&plan, args.recipe.as_deref(), &args.out)?;
             Ok(Exit::Done)
         }
         Err(error) => {

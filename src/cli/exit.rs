@@ -18,6 +18,7 @@ pub const TABLE: &str = "Exit codes:
   4    a law, a tolerance or a comparison failed
   5    input, output or resources (memory, threads, a locked folder) failed
   6    unsupported
+  7    stale: the folder does not hold what would be baked (--check)
   130  interrupted";
 
 /// How the program ended.
@@ -37,6 +38,8 @@ pub enum Exit {
     Io = 5,
     /// Something that is not supported.
     Unsupported = 6,
+    /// The folder does not hold what would be baked.
+    Stale = 7,
     /// Interrupted by the user.
     Interrupted = 130,
 }

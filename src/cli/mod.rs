@@ -2,6 +2,7 @@
 
 pub mod albedo;
 pub mod bake;
+mod build_step;
 pub mod check;
 pub mod convert;
 pub mod describe;

@@ -74,16 +74,11 @@ impl Manifest {
         maps: Vec<MapEntry>,
         stale: Vec<String>,
     ) -> Manifest {
-        let mut hasher = blake3::Hasher::new();
-        let units = plan.tables.iter().map(|t| &t.identity).chain(plan.maps.iter().map(|m| &m.identity));
-        for identity in units {
-            hasher.update(identity.as_bytes());
-        }
         Manifest {
             schema: SCHEMA,
             tool: tool(),
             recipe: plan.name.clone(),
-            hash: hasher.finalize().to_hex().to_string(),
+            hash: plan.units_hash(),
             tables,
             maps,
             scenes: plan.reasons.clone(),

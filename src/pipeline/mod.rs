@@ -9,6 +9,7 @@ mod companion;
 pub mod cost;
 mod event;
 mod fit;
+pub mod fresh;
 mod gather;
 pub mod golden;
 mod in_memory;

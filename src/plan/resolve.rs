@@ -90,6 +90,17 @@ impl Plan {
         self
     }
 
+    /// Hash over the identities of its tables and maps, as the manifest of a bake of it holds.
+    #[must_use]
+    pub fn units_hash(&self) -> String {
+        let mut hasher = blake3::Hasher::new();
+        let units = self.tables.iter().map(|t| &t.identity).chain(self.maps.iter().map(|m| &m.identity));
+        for identity in units {
+            hasher.update(identity.as_bytes());
+        }
+        hasher.finalize().to_hex().to_string()
+    }
+
     /// The plan with further maps.
     ///
     /// # Errors

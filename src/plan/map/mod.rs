@@ -93,6 +93,17 @@ pub struct MapRequest {
 pub const CHECK: usize = 32;
 
 impl MapRequest {
+    /// The files that it reads.
+    #[must_use]
+    pub fn files_read(&self) -> Vec<std::path::PathBuf> {
+        let roughness = match &self.roughness {
+            RoughnessInput::Image { image, .. } => Some(image),
+            RoughnessInput::Constant(_) => None,
+        };
+        let all = self.normal.iter().map(|n| &n.image).chain(roughness);
+        all.filter(|s| matches!(s, Source::File(_))).map(Source::path).collect()
+    }
+
     /// A map with the defaults of a recipe: the rule of this program about the mean normal, one width, KTX2.
     #[must_use]
     pub fn new(name: impl Into<String>, normal: Option<Input>, roughness: RoughnessInput) -> MapRequest {
