@@ -85,6 +85,26 @@ fn engines() -> String {
     )
 }
 
+/// How far off shipped files are.
+fn shipped() -> String {
+    let errors = |[largest, mean]: [f64; 2]| format!("{largest:.1e}, {mean:.1e}");
+    rows(
+        "| engine | file | whole domain | practical | of |",
+        ENGINES.iter().flat_map(|e| {
+            e.files.iter().map(|f| {
+                let [whole, practical, of] = match &f.shipped {
+                    Some(s) => [errors(s.whole), errors(s.practical), s.source.to_owned()],
+                    None if f.replaces.contains("made ") => {
+                        ["none", "", "made when it starts; nothing is shipped"].map(str::to_owned)
+                    }
+                    None => ["not measured", "", "no copy of the file was at hand"].map(str::to_owned),
+                };
+                format!("| `{}` | {} | {whole} | {practical} | {of} |", e.id, f.replaces)
+            })
+        }),
+    )
+}
+
 fn formats() -> String {
     rows(
         "| container | files | channels | storages | options | metadata inside |",
@@ -146,6 +166,7 @@ fn sections() -> Vec<(&'static str, String)> {
         ("laws", laws),
         ("presets", presets),
         ("engines", engines()),
+        ("shipped", shipped()),
         ("engine pages", pages.join("\n").trim_end().to_owned()),
         ("formats", formats()),
         ("extensions", extensions()),

@@ -4,6 +4,7 @@ pub mod albedo;
 pub mod bake;
 mod build_step;
 pub mod check;
+pub mod converge;
 pub mod convert;
 pub mod describe;
 pub mod diff;
@@ -28,6 +29,7 @@ pub mod progress;
 pub mod report;
 pub mod scene;
 mod scene_write;
+pub mod stress;
 mod suggest;
 pub mod verify;
 
@@ -66,7 +68,7 @@ enum Verb {
     Preview(preview::Args),
     /// Write a page of an output folder: pictures of its tables and their errors, curves, spheres, laws, worst texels.
     Report(report::Args),
-    /// Check that an output folder holds what its manifest says.
+    /// Re-check baked files from what they say of themselves, and folders against their manifest.
     Verify(verify::Args),
     /// Compare a fresh bake with committed outputs, or commit them.
     Golden(golden::Args),
@@ -76,6 +78,10 @@ enum Verb {
     Albedo(albedo::Args),
     /// Check reciprocity and energy of models over their domain.
     Laws(laws::Args),
+    /// Walk the ends of declared domains: what is not finite, gains energy, loses digits, or is not as its estimate says.
+    Stress(stress::Args),
+    /// Measure error against evaluations, time and bytes, for this baker and for the samplers of others; with charts.
+    Converge(converge::Args),
     /// Draw the lobe of a model as a polar plot.
     Plot(plot::Args),
     /// Fit a formula to the split sum of a model, or to any table, as shader code.
@@ -103,11 +109,13 @@ pub fn run(cli: Cli, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         Verb::Convert(args) => convert::run(&args, cancel),
         Verb::Preview(args) => preview::run(&args, cancel),
         Verb::Report(args) => report::run(&args, cancel),
-        Verb::Verify(args) => verify::run(&args),
+        Verb::Verify(args) => pool(None)?.install(|| verify::run(&args, cancel)),
         Verb::Golden(args) => golden::run(&args, cancel),
         Verb::Eval(args) => eval::run(&args, cancel),
         Verb::Albedo(args) => albedo::run(&args, cancel),
         Verb::Laws(args) => pool(None)?.install(|| laws::run(&args, cancel)),
+        Verb::Stress(args) => pool(None)?.install(|| stress::run(&args, cancel)),
+        Verb::Converge(args) => pool(None)?.install(|| converge::run(&args, cancel)),
         Verb::Plot(args) => plot::run(&args, cancel),
         Verb::Fit(args) => pool(None)?.install(|| fit::run(&args, cancel)),
         Verb::List(args) => list::run(&args),

@@ -81,6 +81,7 @@ mod stoppable;
 pub mod storage;
 mod texels;
 pub mod text;
+pub mod told;
 
 pub use diff::{ImageDiff, Tolerance};
 pub use error::EncodeError;
@@ -88,6 +89,7 @@ pub use option::{FILE_OPTIONS, FileOption, Shape};
 pub use quantise::{Quantised, RangeFault, Unstored, quantise_table, quantise_table_until};
 pub use read::{Image, ReadError};
 pub use storage::Storage;
+pub use told::raw_rgbd;
 
 use crate::cancel::Cancel;
 use crate::grid::{Channel, Grid};

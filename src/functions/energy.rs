@@ -1,10 +1,13 @@
 //! Energy that single scattering loses: the factors that give it back.
 
 use super::fresnel::F0;
-use super::{FunctionInfo, NO_ANGLES, REFERENCE, alias_with, known, number};
+use super::{FunctionError, FunctionInfo, NO_ANGLES, REFERENCE, alias_with, known, number};
 use crate::cite;
 use crate::models::Param;
 use crate::terms::multiple_scattering as ms;
+
+/// How far a sum of two integrals may be above 1 before it is no albedo: what storing them as half floats adds.
+const ROUNDING: f64 = 1.0 / 1024.0;
 
 const E_MU: Param = number("e", "directional albedo of the white lobe at the view cosine", [1e-9, 1.0], 0.7);
 const SCALE: Param = number("scale", "channel A of a split-sum table", [0.0, 1.0], 0.6).also(&["A"]);
@@ -119,7 +122,12 @@ pub static ALL: &[FunctionInfo] = &[
             ),
         ],
         eval: |p, _| {
-            let parts = ms::fdez_aguera(p.number("f0")?, p.number("scale")?, p.number("bias")?);
+            let (scale, bias) = (p.number("scale")?, p.number("bias")?);
+            if scale + bias > 1.0 + ROUNDING {
+                let why = "scale + bias is above 1, more than a lobe can reflect";
+                return Err(FunctionError::Undefined { function: "fdez-aguera-weights", why });
+            }
+            let parts = ms::fdez_aguera(p.number("f0")?, scale, bias);
             Ok(match p.choice("part")? {
                 "single" => parts.single,
                 "multiple" => parts.multiple,

@@ -2,7 +2,8 @@
 
 use super::ndf::{ALPHA, ALPHA_X, ALPHA_Y, GAMMA, ROUGHNESS};
 use super::{
-    COMPONENTS, FunctionInfo, Input, NO_ANGLES, REFERENCE, alias, alias_with, component, known, number,
+    COMPONENTS, FunctionError, FunctionInfo, Input, NO_ANGLES, REFERENCE, alias, alias_with, component,
+    known, number,
 };
 use crate::cite;
 use crate::math::frame;
@@ -40,7 +41,14 @@ pub static ALL: &[FunctionInfo] = &[
         notes: AZIMUTH,
         also: &[alias("sample_ggx_D_tan2theta")],
         known: &[known(&[("alpha", "0.125"), ("u", "0.5")], NO_ANGLES, 0.015_625, 1e-14, "closed form")],
-        eval: |p, _| Ok(frame::tan2_theta(Ggx::isotropic(p.number("alpha")?).sample_d(draw(p)?))),
+        eval: |p, _| {
+            let wm = Ggx::isotropic(p.number("alpha")?).sample_d(draw(p)?);
+            if wm.z <= 0.0 {
+                let why = "u = 1 draws a normal in the horizon, where tan^2 is infinite";
+                return Err(FunctionError::Undefined { function: "sample-ggx", why });
+            }
+            Ok(frame::tan2_theta(wm))
+        },
     },
     FunctionInfo {
         id: "sample-beckmann",

@@ -96,6 +96,53 @@ impl Scalar for f64 {
     }
 }
 
+/// As a shader computes.
+#[allow(clippy::cast_possible_truncation, reason = "numbers of 32 bits are what is asked for")]
+impl Scalar for f32 {
+    // as in the programs that are written
+    const LEAST: f64 = 1e-30;
+
+    fn number(v: f64) -> f32 {
+        v as f32
+    }
+
+    fn plus(self, other: f32) -> f32 {
+        self + other
+    }
+
+    fn minus(self, other: f32) -> f32 {
+        self - other
+    }
+
+    fn times(self, other: f32) -> f32 {
+        self * other
+    }
+
+    fn over(self, other: f32) -> f32 {
+        self / other
+    }
+
+    fn at_least(self, least: f64) -> f32 {
+        if self < least as f32 { least as f32 } else { self }
+    }
+
+    fn at_most(self, most: f64) -> f32 {
+        if self > most as f32 { most as f32 } else { self }
+    }
+
+    fn root(self) -> f32 {
+        self.sqrt()
+    }
+
+    fn raised(self, p: f64) -> f32 {
+        libm::powf(self, p as f32)
+    }
+
+    fn cosine(self) -> f32 {
+        libm::cosf(self)
+    }
+}
+
 /// A value with its derivative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slope {

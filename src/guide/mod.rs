@@ -54,6 +54,9 @@ topics! {
     conventions
     accuracy
     reports
+    stability
+    checking
+    shipped
     laws
     formulas
     numbers

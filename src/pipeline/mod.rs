@@ -22,6 +22,7 @@ pub mod memory;
 pub mod pages;
 #[cfg(all(feature = "report", feature = "scene"))]
 pub mod preview;
+pub mod recheck;
 mod size;
 pub mod suggest;
 mod table;

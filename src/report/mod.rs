@@ -4,15 +4,20 @@
 //! The room stands above `encode`, whose pictures and comparisons it puts into words.
 
 pub mod analytic;
+pub mod chart;
+pub mod converge;
 pub mod diff;
 pub mod difference;
 pub mod inspect;
 mod inspect_map;
+mod letters;
 #[cfg(feature = "report")]
 pub mod page;
 pub mod plot;
+pub mod reading;
 pub mod recognise;
 pub mod split;
+pub mod stress;
 pub mod text;
 
 pub use diff::diff;

@@ -33,12 +33,12 @@ pub(super) const COLOURS: [[u8; 3]; 6] =
     [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [230, 159, 0], [86, 180, 233]];
 const GREY: [u8; 3] = [176, 176, 176];
 
-struct Stroke {
-    points: Vec<[f64; 2]>,
-    colour: [u8; 3],
-    width: f64,
+pub(super) struct Stroke {
+    pub(super) points: Vec<[f64; 2]>,
+    pub(super) colour: [u8; 3],
+    pub(super) width: f64,
     /// A lobe of a sum, drawn with gaps.
-    dashed: bool,
+    pub(super) dashed: bool,
 }
 
 /// A drawn plot.
@@ -196,7 +196,7 @@ impl Figure {
 }
 
 /// The line without the points that lie within a twentieth of a pixel of the line through their neighbours.
-fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+pub(super) fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut kept: Vec<[f64; 2]> = Vec::new();
     for (i, p) in points.iter().enumerate() {
         let (Some(a), Some(b)) = (kept.last(), points.get(i + 1)) else {
@@ -214,7 +214,7 @@ fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
 }
 
 /// Blends a segment in: coverage falls over one pixel at the edge of the line.
-fn segment(canvas: &mut image::RgbImage, a: [f64; 2], b: [f64; 2], stroke: &Stroke) {
+pub(super) fn segment(canvas: &mut image::RgbImage, a: [f64; 2], b: [f64; 2], stroke: &Stroke) {
     let reach = 0.5 * stroke.width + 1.0;
     let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
     let length2 = (dx * dx + dy * dy).max(1e-12);

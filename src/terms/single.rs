@@ -71,7 +71,8 @@ pub fn blinn_phong_d(n: f32, wm: Vec3) -> f32 {
     (n + 2.0) / (2.0 * PI) * cos_pow(wm.z, wm.x * wm.x + wm.y * wm.y, n)
 }
 
-/// GTR, as [`super::gtr::d`].
+/// GTR, as [`super::gtr::d`]: `φ(L) / (π φ((γ − 1) L)) t²` with L = ln α², φ(x) = (eˣ − 1)/x and
+/// `t = (cos²θ + sin²θ/α²)^(−γ/2)/α`, which overflows nowhere: the power and the norm do where alpha is small and gamma large.
 #[must_use]
 pub fn gtr_d(alpha: f32, gamma: f32, wm: Vec3) -> f32 {
     if wm.z <= 0.0 {
@@ -79,9 +80,10 @@ pub fn gtr_d(alpha: f32, gamma: f32, wm: Vec3) -> f32 {
     }
     let log_square = 2.0 * libm::logf(alpha);
     let exprel = |x: f32| if x == 0.0 { 1.0 } else { libm::expm1f(x) / x };
-    let norm = FRAC_1_PI * exprel(log_square) / exprel((1.0 - gamma) * log_square);
-    let base = alpha * alpha * wm.z * wm.z + (wm.x * wm.x + wm.y * wm.y);
-    norm * libm::powf(base, -gamma)
+    let norm = FRAC_1_PI * exprel(log_square) / exprel((gamma - 1.0) * log_square);
+    let (x, y) = (wm.x / alpha, wm.y / alpha);
+    let t = libm::powf(wm.z * wm.z + (x * x + y * y), -0.5 * gamma) / alpha;
+    norm * t * t
 }
 
 /// Charlie, as [`super::charlie::d`].

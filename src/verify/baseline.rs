@@ -6,13 +6,10 @@
 use crate::integrate::hammersley::radical_inverse;
 use std::f32::consts::TAU;
 
-/// Scale and bias by N Hammersley points in f32, as other bakers compute them.
+/// Scale and bias by N Hammersley points in f32, as other bakers compute them; sine and cosine are those of libm, which are the same
+/// on every machine.
 #[must_use]
-#[allow(
-    clippy::disallowed_methods,
-    clippy::cast_possible_truncation,
-    reason = "a yardstick must cost what the original costs, platform functions and f32 included; it is never baked"
-)]
+#[allow(clippy::cast_possible_truncation, reason = "the originals compute in f32")]
 pub fn hammersley_f32(mu_o: f32, alpha: f32, samples: u32) -> [f32; 2] {
     let view = [(1.0 - mu_o * mu_o).sqrt(), 0.0, mu_o];
     let a2 = alpha * alpha;
@@ -21,7 +18,7 @@ pub fn hammersley_f32(mu_o: f32, alpha: f32, samples: u32) -> [f32; 2] {
         let (u, v) = (i as f32 / samples as f32, radical_inverse(i) as f32);
         let cos = ((1.0 - v) / (1.0 + (a2 - 1.0) * v)).sqrt();
         let sin = (1.0 - cos * cos).max(0.0).sqrt();
-        let h = [sin * (TAU * u).cos(), sin * (TAU * u).sin(), cos];
+        let h = [sin * libm::cosf(TAU * u), sin * libm::sinf(TAU * u), cos];
         let voh = (view[0] * h[0] + view[2] * h[2]).max(0.0);
         let mu_i = 2.0 * voh * h[2] - view[2];
         if mu_i > 0.0 {
@@ -29,7 +26,8 @@ pub fn hammersley_f32(mu_o: f32, alpha: f32, samples: u32) -> [f32; 2] {
                 / (mu_i * (mu_o * mu_o * (1.0 - a2) + a2).sqrt()
                     + mu_o * (mu_i * mu_i * (1.0 - a2) + a2).sqrt());
             let weight = 4.0 * vis * mu_i * voh / h[2];
-            let fc = (1.0 - voh).powi(5);
+            let m = 1.0 - voh;
+            let fc = (m * m) * (m * m) * m;
             scale += (1.0 - fc) * weight;
             bias += fc * weight;
         }

@@ -7,6 +7,7 @@
 
 pub mod baseline;
 pub mod complement;
+pub mod converge;
 pub mod cross_check;
 pub mod energy;
 pub mod finding;
@@ -24,6 +25,7 @@ pub mod reconstruction;
 pub mod reversible;
 pub mod seeds;
 pub mod split;
+pub mod stress;
 pub mod survey;
 pub mod tolerance;
 pub mod total;

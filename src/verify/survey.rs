@@ -19,7 +19,7 @@ const TOLERANCE: f64 = 1e-4;
 const PAIRS: usize = 64;
 
 /// Relative difference that rounding may cause between f(wo, wi) and f(wi, wo).
-const RECIPROCAL: f64 = 1e-9;
+pub(in crate::verify) const RECIPROCAL: f64 = 1e-9;
 
 /// Values below this are what is left of a vanished tail.
 const NEGLIGIBLE: f64 = 1e-20;

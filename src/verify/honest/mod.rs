@@ -26,6 +26,7 @@ use super::{Case, Law, Outcome, Watch};
 use crate::tables::{Role, Spec, place};
 pub(super) use integrals::albedo;
 use rayon::prelude::*;
+pub use strata::{LEAST, Row, rows};
 
 /// The law.
 pub static LAW: Law = Law {
@@ -102,6 +103,8 @@ struct Asked<'a> {
 /// The rules of a table.
 struct Rules<'a> {
     case: &'a Case<'a>,
+    /// What each stored number may be off besides its estimate, `[texel][channel]`; empty where nothing is.
+    slack: &'a [f64],
     models: models::Models,
     profiles: Option<profiles::Profiles>,
     colour: Option<colour::Colour>,
@@ -109,10 +112,11 @@ struct Rules<'a> {
 }
 
 impl<'a> Rules<'a> {
-    fn new(case: &'a Case<'a>) -> Rules<'a> {
+    fn new(case: &'a Case<'a>, slack: &'a [f64]) -> Rules<'a> {
         let spec = case.spec();
         Rules {
             case,
+            slack,
             models: models::Models::new(spec),
             profiles: profiles::Profiles::new(spec),
             colour: colour::Colour::new(spec),
@@ -198,14 +202,47 @@ impl<'a> Rules<'a> {
 
     /// How far off a rule may be to judge a channel.
     fn limit(&self, texel: usize, channel: usize) -> f64 {
-        0.5 * (self.case.at(texel, channel).1 + self.case.tolerance)
+        let slack = self.slack(texel, channel);
+        0.5 * (self.case.at(texel, channel).1 + self.case.tolerance + 0.5 * slack)
+    }
+
+    fn slack(&self, texel: usize, channel: usize) -> f64 {
+        let i = texel * self.case.table.channels.len() + channel;
+        self.slack.get(i).copied().unwrap_or(0.0)
+    }
+
+    /// Is every channel of a texel that can be judged as the first sum says? Nothing where none can.
+    fn agrees(&self, texel: usize) -> Option<bool> {
+        let (spec, table) = (self.case.spec(), self.case.table);
+        let point = table.grid.texel(texel);
+        let targets: Vec<f64> =
+            (0..table.channels.len()).map(|c| 0.9 / DOUBT * self.limit(texel, c)).collect();
+        let truths = self.truths(&Asked {
+            spec,
+            at: point.values(),
+            baked: table.at(texel),
+            targets: &targets,
+            texel,
+            route: Route::First,
+        });
+        let mut agrees = None;
+        for (c, truth) in
+            truths.into_iter().enumerate().filter(|(c, _)| has_rule(spec.layout.channels[*c].role))
+        {
+            if let Verdict::Margin(margin, _) = self.verdict(texel, c, truth) {
+                agrees = Some(margin >= 0.0 && agrees.unwrap_or(true));
+            }
+        }
+        agrees
     }
 
     fn verdict(&self, texel: usize, channel: usize, truth: Option<Truth>) -> Verdict {
         let (v, e) = self.case.at(texel, channel);
         match truth {
             Some(t) if t.value.is_finite() && DOUBT * t.error <= self.limit(texel, channel) => {
-                let allowed = (ESTIMATES * e).max(ROUNDING * t.value.abs().max(1.0)) + DOUBT * t.error;
+                let allowed = (ESTIMATES * e).max(ROUNDING * t.value.abs().max(1.0))
+                    + self.slack(texel, channel)
+                    + DOUBT * t.error;
                 let off = (v - t.value).abs();
                 // a sum that knows its own first digit hardly has not seen its integrand: it blames no value within the tolerance
                 let unsettled = DOUBT * t.error >= UNSETTLED * t.value.abs();
@@ -250,22 +287,62 @@ enum Verdict {
     Unknown(String),
 }
 
-fn check(case: &Case<'_>) -> Outcome {
-    let rules = Rules::new(case);
-    let strata = strata::strata(&case.table.grid, 0x40e5);
-    let looked: Vec<(Watch, bool)> = strata
+/// What came of a texel, or of those that stood in for it.
+#[derive(Debug, Clone)]
+pub struct Looked {
+    /// What was seen of its channels.
+    pub watch: Watch,
+    /// False where no texel of the row could be judged.
+    pub judged: bool,
+}
+
+/// Looks at the texels of `rows`. `slack` is what each stored number may be off besides its estimate, `[texel][channel]`, or empty.
+#[must_use]
+pub fn look(case: &Case<'_>, slack: &[f64], rows: &[Row]) -> Vec<Looked> {
+    let rules = Rules::new(case, slack);
+    let one = |row: &Row| {
+        let mut watch = Watch::default();
+        let judged = row.iter().take_while(|_| case.goes_on()).any(|t| rules.judge(*t, &mut watch));
+        Looked { watch, judged }
+    };
+    rows.par_iter().map(one).collect()
+}
+
+/// Are all numbers that can be judged at the first texels of `rows` those of the table? The first one that is not ends it. At least
+/// `least` texels must be judged.
+#[must_use]
+pub fn agree(case: &Case<'_>, slack: &[f64], rows: &[Row], least: usize) -> bool {
+    let rules = Rules::new(case, slack);
+    let judged: Option<usize> = rows
         .par_iter()
-        .map(|row| {
-            let mut watch = Watch::default();
-            let judged = row.iter().take_while(|_| case.goes_on()).any(|t| rules.judge(*t, &mut watch));
-            (watch, judged)
+        .map(|row| match row.first().filter(|_| case.goes_on()).and_then(|t| rules.agrees(*t)) {
+            Some(true) => Some(1),
+            Some(false) => None,
+            None => Some(0),
         })
-        .collect();
-    let lost = looked.iter().filter(|(_, judged)| !judged).count();
+        .try_reduce(|| 0, |a, b| Some(a + b));
+    judged.is_some_and(|judged| judged >= least)
+}
+
+/// Is there a rule for a channel of the table?
+#[must_use]
+pub fn concerns(spec: &Spec) -> bool {
+    (LAW.concerns)(spec)
+}
+
+fn check(case: &Case<'_>) -> Outcome {
+    let looked = look(case, &[], &rows(&case.table.grid, 0x40e5, LEAST));
+    outcome(looked)
+}
+
+/// What the texels say together.
+#[must_use]
+pub fn outcome(looked: Vec<Looked>) -> Outcome {
+    let lost = looked.iter().filter(|l| !l.judged).count();
     let total = looked.len();
     let mut watch = Watch::default();
-    for (seen, _) in looked {
-        watch.join(seen);
+    for l in looked {
+        watch.join(l.watch);
     }
     let few = lost as f64 > (LOST * total as f64).max(1.0);
     if few && !watch.is_broken() && watch.checked() > 0 {

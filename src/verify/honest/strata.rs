@@ -5,25 +5,26 @@ use crate::grid::Grid;
 use crate::verify::seeds::Seeds;
 
 /// Least number of texels: `0.95^135 < 0.001`.
-pub(super) const LEAST: usize = 135;
+pub const LEAST: usize = 135;
 
 /// Texels of one row, in the order in which they are tried: the first is looked at, the next ones stand in for it where it cannot
 /// be judged.
-pub(super) type Row = Vec<usize>;
+pub type Row = Vec<usize>;
 
 /// How many stand in for a texel that cannot be judged.
 const SPARE: usize = 3;
 
-/// Numbers of texels, in order of the rows; each row is met at least once, none of the texels twice.
-pub(super) fn strata(grid: &Grid, seed: u64) -> Vec<Row> {
+/// Numbers of at least `least` texels, or of all, in order of the rows; each row is met at least once, none of the texels twice.
+#[must_use]
+pub fn rows(grid: &Grid, seed: u64, least: usize) -> Vec<Row> {
     let len = grid.len();
-    if len <= LEAST {
+    if len <= least {
         return (0..len).map(|texel| vec![texel]).collect();
     }
     let width = grid.axes().first().map_or(1, |a| a.len);
     let rows = len / width;
     let mut seeds = Seeds::new(seed);
-    let each = LEAST.div_ceil(rows).min(width);
+    let each = least.div_ceil(rows).min(width);
     let mut columns = Columns::new(width, &mut seeds);
     let mut out = Vec::new();
     for row in 0..rows {
