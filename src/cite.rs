@@ -154,6 +154,8 @@ cites! {
     LAZANYI_2005 = "Lazanyi2005", "Lazanyi, Szirmay-Kalos: Fresnel Term Approximations for Metals, WSCG short papers", 2005, "http://hdl.handle.net/11025/11214";
     /// Lindbloom, matrices of colour spaces.
     LINDBLOOM = "Lindbloom", "Lindbloom: RGB/XYZ Matrices", 2017, "http://www.brucelindbloom.com/index.html?Eqn_RGB_XYZ_Matrix.html";
+    /// McAllister, maps of the parameters of Lafortune's model.
+    MCALLISTER_2002 = "McAllister2002", "McAllister, Lastra, Heidrich: Efficient Rendering of Spatial Bi-directional Reflectance Distribution Functions, Graphics Hardware", 2002, "https://doi.org/10.2312/EGGH/EGGH02/079-088";
     /// Marquardt, damped steps of least squares.
     MARQUARDT_1963 = "Marquardt1963", "Marquardt: An Algorithm for Least-Squares Estimation of Nonlinear Parameters, Journal of SIAM 11(2)", 1963, "https://doi.org/10.1137/0111030";
     /// Matusik and others, the measured materials of MERL.

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "test")]
 
 use crate::tolerance::{
-    DIGITS_LOST, FEW_ROUNDINGS, LOBE_DIGITS, LOBE_DIGITS_NINE, LOBE_DIGITS_SIX, LOBE_SUM,
+    DIGITS_LOST, FEW_ROUNDINGS, LOBE_DIGITS, LOBE_DIGITS_NINE, LOBE_DIGITS_SIX, LOBE_ENERGY, LOBE_SUM,
 };
 use brdfbake::functions::conversion::{By, CONVERSIONS, conversion, gltf_anisotropy};
 use brdfbake::terms::half_vectors::{Lobe, distance};
@@ -110,4 +110,41 @@ fn what_is_ggx_already_is_left() {
     }
     let both = conversion("roughness").unwrap().convert([0.3; 2], By::Nearest).alphas;
     assert!(both.iter().all(|a| (a - 0.09).abs() < FEW_ROUNDINGS));
+}
+
+/// The difference of E by sums of textbook formulas: Phong's lobe against GGX, and what is gained.
+#[test]
+fn the_difference_of_energy_is_that_of_sums() {
+    use crate::sbrdf::ggx;
+    use brdfbake::functions::conversion::energy::COSINES;
+    use glam::DVec3;
+    let n = 50.0;
+    let entry = conversion("phong").unwrap();
+    let (found, gap) = entry.certified([n; 2], By::Nearest).unwrap();
+    let (mut largest, mut gained) = (0.0f64, 0.0f64);
+    for mu in COSINES {
+        let i = DVec3::new((1.0f64 - mu * mu).sqrt(), 0.0, mu);
+        let mirror = DVec3::new(-i.x, 0.0, i.z);
+        // even in both angles about the normal; half of it, which mirrors the other
+        let steps = 700;
+        let step = std::f64::consts::FRAC_PI_2 / f64::from(steps);
+        let node = |k: u32| {
+            let (theta, phi) =
+                (step * (f64::from(k % steps) + 0.5), 2.0 * step * (f64::from(k / steps) + 0.5));
+            let o = DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos());
+            (o, 4.0 * step * step * theta.sin())
+        };
+        let nodes: Vec<(DVec3, f64)> = (0..steps * steps).map(node).collect();
+        let phong = |o: DVec3| (n + 2.0) / std::f64::consts::TAU * mirror.dot(o).max(0.0).powf(n) * o.z;
+        let sum = |f: &dyn Fn(DVec3) -> f64| nodes.iter().map(|(o, a)| a * f(*o)).sum::<f64>();
+        let difference = sum(&|o| ggx(i, o, found.alphas[0], 1.0)) - sum(&phong);
+        (largest, gained) = (largest.max(difference.abs()), gained.max(difference));
+    }
+    assert!((gap.largest - largest).abs() < LOBE_ENERGY, "{gap:?}, by sums {largest}");
+    assert!((gap.gained - gained).abs() < LOBE_ENERGY && gained > 0.1, "{gap:?}, by sums {gained}");
+    // what is GGX already loses nothing
+    assert_eq!(
+        conversion("roughness").unwrap().certified([0.4; 2], By::Nearest).unwrap().1.largest.to_bits(),
+        0
+    );
 }

@@ -214,6 +214,34 @@ fn exponents_are_converted_with_their_distance() {
     assert!((f64::from(level.largest) - 0.1755).abs() < LOBE_DIGITS, "{}", level.largest);
 }
 
+/// The contact sheet: tiles of the channels, histograms, and spheres of the worst texels, of which the left half is the wider one here.
+#[test]
+fn a_contact_sheet_shows_maps_and_the_worst_texels() {
+    let dir = tempfile::tempdir().unwrap();
+    // facets that no lobe tells of: two narrow ones far apart
+    let normal = picture(dir.path(), "n.png", [4, 4], 3, |x, _, c| {
+        normal_code([if x.is_multiple_of(2) { 0.5 } else { -0.5 }, 0.0], c)
+    });
+    let mut request = request(Some(normal), RoughnessInput::Constant(0.3));
+    request.outputs = vec![output("ktx2")];
+    let done = bake(&request, dir.path());
+    assert!(done.record.pictured.iter().any(|p| p.facets.len() == 4), "{:?}", done.record.pictured);
+    let images: Vec<_> = ["error", "roughness"]
+        .map(|map| brdfbake::encode::read::read_file(&dir.path().join(format!("m.{map}.ktx2"))).unwrap())
+        .into();
+    let text = brdfbake::report::inspect("m.error.ktx2", &images[0]);
+    assert!(text.contains("Histograms") && text.contains('█') && text.contains("worst"), "{text}");
+    let sheet = read_bytes(&brdfbake::report::sheet::sheet(&images).unwrap()).unwrap();
+    // three channels, their histograms, four spheres
+    assert_eq!([sheet.width, sheet.height], [4 * 168 + 8, 3 * 168 + 8]);
+    // both halves of the first sphere are lit somewhere
+    let lit = |from: usize| {
+        let tile = (0..160).flat_map(|y| (from..from + 70).map(move |x| (2 * 168 + 8 + y) * sheet.width + x));
+        tile.map(|i| sheet.planes[0].values[i]).fold(0.0, f32::max)
+    };
+    assert!(lit(8 + 5) > 0.3 && lit(8 + 85) > 0.3, "{} {}", lit(8 + 5), lit(8 + 85));
+}
+
 /// Packed channels keep plain means; roughness is filtered among them.
 #[test]
 fn other_channels_keep_their_means() {

@@ -7,4 +7,5 @@ mod map_files;
 mod map_pictures;
 mod map_recipes;
 mod map_scenes;
+mod sbrdf;
 mod tolerance;

@@ -190,6 +190,14 @@ pub(crate) const F0_OF_CODES: f64 = 3e-3;
 pub(crate) const FIVE_DIGITS: f64 = 6e-6;
 /// Nine printed digits.
 pub(crate) const LOBE_DIGITS_NINE: f64 = 1e-8;
+/// A reflectance by the 72 rings and 64 sectors of a conversion, at grazing too.
+pub(crate) const LOBE_ENERGY: f64 = 3e-3;
+/// Shapes and albedos of a fit: it ends where a step gains a hundred thousandth of the square.
+pub(crate) const LOBE_FIT: f64 = 5e-3;
+/// A sum of rings and sectors that the horizon cuts: an edge of a part in a few hundred rings.
+pub(crate) const LOBE_HORIZON: f64 = 1e-3;
+/// A minimum that golden sections find: the root of the last digit, and what the value has of it.
+pub(crate) const LOBE_MINIMUM: f64 = 1e-6;
 /// A midpoint sum of 1500 x 1500 slopes of an integrand with a kink.
 pub(crate) const LOBE_SUM: f64 = 2e-5;
 

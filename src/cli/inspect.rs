@@ -3,7 +3,7 @@
 use super::{Exit, Failure, output};
 use crate::cancel::Cancel;
 use crate::encode::raw::Raw;
-use crate::encode::{Encoder, beside, read};
+use crate::encode::{Encoder, atomic, beside, read};
 use crate::report::{self, recognise};
 use std::path::PathBuf;
 
@@ -26,14 +26,18 @@ pub struct Args {
     /// Print the provenance as JSON instead of text.
     #[arg(long)]
     json: bool,
+    /// Draw a contact sheet of the files as PNG: channels, histograms, and the worst texels of parameter maps as lit spheres.
+    #[arg(long, value_name = "FILE")]
+    sheet: Option<PathBuf>,
 }
 
 /// Runs it.
 ///
 /// # Errors
-/// [`Failure`] when a file cannot be read.
+/// [`Failure`] when a file cannot be read, or the sheet not be written.
 pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
     let layout = super::diff::layout(args.raw.as_deref(), &args.files)?;
+    let mut images = Vec::new();
     for path in &args.files {
         let is_bare = path.extension().is_some_and(|e| e.eq_ignore_ascii_case(Raw.extension()));
         let of_file = layout.as_ref().filter(|_| is_bare);
@@ -52,6 +56,13 @@ pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
         } else {
             output::data(&report::inspect(&name, &image))?;
         }
+        if args.sheet.is_some() {
+            images.push(image);
+        }
+    }
+    if let Some(path) = &args.sheet {
+        let bytes = report::sheet::sheet(&images).map_err(|e| Failure::new(Exit::Internal, e))?;
+        atomic::write_all(&[(path.clone(), bytes)], cancel)?;
     }
     Ok(Exit::Done)
 }

@@ -2,6 +2,10 @@
 //!
 //! A parametrisation is one entry of [`CONVERSIONS`]: maps and `brdfbake eval` go through the same entry.
 
+pub mod energy;
+
+pub use energy::Gap;
+
 use super::{FunctionError, FunctionInfo, NO_ANGLES, known, number};
 use crate::cite::{self, Cite};
 use crate::models::{Param, Params};
@@ -20,7 +24,12 @@ pub struct Conversion {
     pub sources: &'static [(Cite, &'static str)],
     /// The lobe of half vectors; a single number is given twice.
     pub lobe: fn([f64; 2]) -> Lobe,
+    /// The model that is meant, with its parameters for a Fresnel factor of 1; none where the lobe is GGX.
+    pub model: Option<fn([f64; 2]) -> ModelOf>,
 }
+
+/// Id of a model, and its parameters.
+pub type ModelOf = (&'static str, Vec<(&'static str, f64)>);
 
 const WIDTH: [f64; 2] = [1e-3, 1.0];
 const POWER: [f64; 2] = [0.0, 1e7];
@@ -47,6 +56,7 @@ const TABLE: &[Conversion] = &[
         numbers: &[("n", POWER)],
         sources: &[(cite::BLINN_1977, "cosine power"), (cite::WALTER_2007, "Eq. 30")],
         lobe: |[n, _]| Lobe::Power([n; 2]),
+        model: Some(|[n, _]| ("blinn-phong-microfacet", vec![("n", n), ("f0", 1.0)])),
     },
     Conversion {
         id: "phong",
@@ -54,6 +64,7 @@ const TABLE: &[Conversion] = &[
         numbers: &[("n", POWER)],
         sources: &[(cite::LAFORTUNE_WILLEMS_1994, "cosine power")],
         lobe: |[n, _]| Lobe::Power([4.0 * n; 2]),
+        model: Some(|[n, _]| ("phong", vec![("kd", 0.0), ("ks", 1.0), ("n", n)])),
     },
     Conversion {
         id: "beckmann",
@@ -61,6 +72,7 @@ const TABLE: &[Conversion] = &[
         numbers: &[("m", WIDTH)],
         sources: &[(cite::COOK_TORRANCE_1982, "section 2")],
         lobe: |[m, _]| Lobe::Beckmann([m; 2]),
+        model: Some(|[m, _]| ("beckmann", vec![("alpha", m), ("f0", 1.0)])),
     },
     Conversion {
         id: "ward",
@@ -68,6 +80,7 @@ const TABLE: &[Conversion] = &[
         numbers: &[("alpha_x", WIDTH), ("alpha_y", WIDTH)],
         sources: &[(cite::WARD_1992, "Eq. 5 (number recalled)")],
         lobe: Lobe::Beckmann,
+        model: Some(|[x, y]| ("ward", vec![("rho_d", 0.0), ("rho_s", 1.0), ("alpha_x", x), ("alpha_y", y)])),
     },
     Conversion {
         id: "ashikhmin-shirley",
@@ -75,6 +88,7 @@ const TABLE: &[Conversion] = &[
         numbers: &[("n_u", POWER), ("n_v", POWER)],
         sources: &[(cite::ASHIKHMIN_SHIRLEY_2000, "Eq. 4")],
         lobe: Lobe::Power,
+        model: Some(|[u, v]| ("ashikhmin-shirley-specular", vec![("rs", 1.0), ("nu", u), ("nv", v)])),
     },
     Conversion {
         id: "alpha",
@@ -82,6 +96,7 @@ const TABLE: &[Conversion] = &[
         numbers: &[("alpha", WIDTH)],
         sources: &[(cite::WALTER_2007, "Eq. 33")],
         lobe: |[a, _]| Lobe::Ggx([a; 2]),
+        model: None,
     },
     Conversion {
         id: "roughness",
@@ -89,6 +104,7 @@ const TABLE: &[Conversion] = &[
         numbers: &[("r", UNIT)],
         sources: &[(cite::BURLEY_2012, "section 5.4")],
         lobe: |[r, _]| ggx_of(r, [1.0; 2]),
+        model: None,
     },
     Conversion {
         id: "smoothness",
@@ -96,6 +112,7 @@ const TABLE: &[Conversion] = &[
         numbers: &[("s", UNIT)],
         sources: &[(cite::BURLEY_2012, "section 5.4, with r = 1 - s")],
         lobe: |[s, _]| ggx_of(1.0 - s, [1.0; 2]),
+        model: None,
     },
     Conversion {
         id: "disney",
@@ -106,6 +123,7 @@ const TABLE: &[Conversion] = &[
             let q = (1.0 - 0.9 * a).sqrt();
             ggx_of(r, [1.0 / q, q])
         },
+        model: None,
     },
     Conversion {
         id: "openpbr",
@@ -116,6 +134,7 @@ const TABLE: &[Conversion] = &[
             let t = (2.0 / (1.0 + (1.0 - a) * (1.0 - a))).sqrt();
             ggx_of(r, [t, (1.0 - a) * t])
         },
+        model: None,
     },
 ];
 
@@ -187,9 +206,12 @@ fn part(p: &Params) -> Result<f64, FunctionError> {
         return Err(undefined);
     }
     let by = if p.choice("rule")? == "formula" { By::Formula } else { By::Nearest };
-    let Converted { alphas, distance } = entry.convert(numbers, by);
+    let converted = entry.convert(numbers, by);
+    let Converted { alphas, distance } = converted;
     let (roughness, strength, _) = gltf_anisotropy(alphas);
     Ok(match p.choice("part")? {
+        "energy" => entry.gap(numbers, &converted)?.largest,
+        "gained" => entry.gap(numbers, &converted)?.gained,
         "alpha_x" => alphas[0],
         "alpha_y" => alphas[1],
         "roughness" => roughness,
@@ -211,8 +233,8 @@ pub static ALL: &[FunctionInfo] = &[FunctionInfo {
         Param::choice("rule", "by least D, or by equal peaks", &["nearest", "formula"]),
         Param::choice(
             "part",
-            "alpha_x; alpha_y; roughness and strength of KHR_materials_anisotropy; D",
-            &["alpha_x", "alpha_y", "roughness", "strength", "distance"],
+            "alpha_x; alpha_y; roughness and strength of KHR_materials_anisotropy; D; largest difference of E over mu in [0.05, 1]; what E gains",
+            &["alpha_x", "alpha_y", "roughness", "strength", "distance", "energy", "gained"],
         ),
     ],
     inputs: &[],

@@ -22,11 +22,12 @@ const LONGEST: f64 = 0.4;
 /// Shorter steps are not worth it.
 const SHORTEST: f64 = 2e-4;
 
-/// Goes down from `start`, at most `steps` steps; returns where it came to, and the value there.
+/// Goes down from `start`, at most `steps` steps, and until a step gains less than the part `enough` of the value; returns where it
+/// came to, and the value there.
 ///
 /// Source: [Nocedal and Wright 2006](crate::cite::NOCEDAL_WRIGHT_2006) Alg. 6.1, with Armijo's rule alone: an update without curvature is left out.
 /// Deterministic.
-pub(super) fn descend(cost: &impl Cost, start: Point, steps: usize) -> (Point, f64) {
+pub(super) fn descend(cost: &impl Cost, start: Point, steps: usize, enough: f64) -> (Point, f64) {
     let n = cost.variables();
     let mut at = cost.hold(start);
     let (mut value, mut slope) = cost.value(&at);
@@ -60,7 +61,7 @@ pub(super) fn descend(cost: &impl Cost, start: Point, steps: usize) -> (Point, f
         }
         let gain = value - lower;
         (at, value, slope) = (next, lower, steeper);
-        if gain < 1e-6 {
+        if gain < 1e-6_f64.max(enough * value) {
             break;
         }
     }

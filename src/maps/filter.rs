@@ -1,7 +1,7 @@
 //! All levels of a pair of maps: every texel's footprint to its lobe, row by row on all threads.
 //!
 //! A footprint is gathered from the texels themselves up to level [`KEPT`]; there it is merged to at most
-//! [`MOST_FACETS`] facets, which the next levels are gathered from. So the work of a level is
+//! [`MOST_FACETS`] facets, a quarter of what it had, which the next levels are gathered from. So the work of a level is
 //! proportional to its texels, and that of all of them to the texels of the first. A texel depends on nothing but its
 //! footprint: the same bytes on any number of threads.
 
@@ -18,7 +18,10 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The level whose footprints are merged and kept.
-pub const KEPT: usize = 3;
+pub const KEPT: usize = 4;
+
+/// Rows that are worked on at once: what is found of them is put together before the next ones.
+const BAND: usize = 64;
 
 /// What is asked for.
 #[derive(Debug, Clone, Copy)]
@@ -45,12 +48,68 @@ pub enum Objective {
 }
 
 /// One level of lobes.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Level {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Level<'a> {
     /// Width and height in texels.
     pub size: [usize; 2],
-    /// The texels, rows from the top.
-    pub texels: Vec<Texel>,
+    texels: Texels<'a>,
+}
+
+/// Texels, rows from the top.
+#[derive(Debug, Clone, PartialEq)]
+enum Texels<'a> {
+    /// The maps as they are.
+    Given(&'a Surface),
+    Found(Vec<Texel>),
+}
+
+impl<'a> Level<'a> {
+    /// The first level: the maps as they are.
+    #[must_use]
+    pub fn first(surface: &'a Surface) -> Level<'a> {
+        Level { size: surface.size, texels: Texels::Given(surface) }
+    }
+
+    /// A level of these texels, rows from the top.
+    #[must_use]
+    pub fn of(size: [usize; 2], texels: Vec<Texel>) -> Level<'a> {
+        Level { size, texels: Texels::Found(texels) }
+    }
+
+    /// How many texels it has.
+    #[must_use]
+    #[allow(clippy::len_without_is_empty, reason = "no level is empty")]
+    pub fn len(&self) -> usize {
+        self.size[0] * self.size[1]
+    }
+
+    /// A texel by its number.
+    #[must_use]
+    pub fn at(&self, i: usize) -> Texel {
+        match &self.texels {
+            Texels::Given(surface) => given(surface, i),
+            Texels::Found(texels) => texels[i],
+        }
+    }
+
+    /// All texels, rows from the top.
+    pub fn iter(&self) -> impl Iterator<Item = Texel> + '_ {
+        (0..self.len()).map(|i| self.at(i))
+    }
+}
+
+fn given(surface: &Surface, i: usize) -> Texel {
+    let (normal, roughness) = (surface.normals.at(i), surface.roughness.at(i));
+    let [roughness_max, angle] = surface.stretch.as_ref().map_or([roughness, 0.0], |s| s[i]);
+    Texel {
+        normal,
+        roughness,
+        roughness_max,
+        angle,
+        distance: surface.residual.at(i),
+        doubt: 0.0,
+        at_limit: false,
+    }
 }
 
 /// What is written of a texel, and what is known of it.
@@ -114,6 +173,8 @@ struct Kept {
     normal: [f32; 3],
     roughness: f32,
     weight: f32,
+    /// √ of the larger width, and its direction.
+    stretch: [f32; 2],
 }
 
 /// The merged footprints of a level: facets of all texels, one after the other, and where those of a texel begin.
@@ -167,14 +228,17 @@ impl Kept {
         let [x, y, z] = self.normal.map(f64::from);
         let r = f64::from(self.roughness);
         let normal = DVec3::new(x, y, z).normalize();
-        Facet { normal, alpha: r * r, weight: weight * f64::from(self.weight) }
+        let [wide, angle] = self.stretch.map(f64::from);
+        let weight = weight * f64::from(self.weight);
+        Facet { normal, alpha: r * r, weight, alpha_max: wide * wide, angle }
     }
 
     #[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]
     fn of(f: &Facet) -> Kept {
         let n = f.normal;
         let (roughness, weight) = (f.alpha.sqrt() as f32, f.weight as f32);
-        Kept { normal: [n.x as f32, n.y as f32, n.z as f32], roughness, weight }
+        let stretch = [f.alpha_max.sqrt() as f32, f.angle as f32];
+        Kept { normal: [n.x as f32, n.y as f32, n.z as f32], roughness, weight, stretch }
     }
 }
 
@@ -182,16 +246,16 @@ impl Kept {
 ///
 /// # Errors
 /// [`FilterError`].
-pub fn filter(
-    surface: &Surface,
+pub fn filter<'a>(
+    surface: &'a Surface,
     settings: &Settings,
     cancel: &Cancel,
     progress: &(dyn Fn(usize, usize) + Sync),
-) -> Result<Vec<Level>, FilterError> {
+) -> Result<Vec<Level<'a>>, FilterError> {
     let sizes = halved(surface.size[0], surface.size[1]);
     let total: usize = sizes.iter().skip(1).map(|s| s[0] * s[1]).sum();
     let done = AtomicUsize::new(0);
-    let mut levels = vec![first(surface)];
+    let mut levels = vec![Level::first(surface)];
     let mut store: Option<Store> = None;
     let mut from = 0;
     for level in 1..sizes.len() {
@@ -212,24 +276,6 @@ pub fn filter(
     Ok(levels)
 }
 
-/// The first level: the maps as they are.
-fn first(surface: &Surface) -> Level {
-    let texel = |i: usize| {
-        let (normal, roughness) = (surface.normals.at(i), surface.roughness.at(i));
-        Texel {
-            normal,
-            roughness,
-            roughness_max: roughness,
-            angle: 0.0,
-            distance: surface.residual.at(i),
-            doubt: 0.0,
-            at_limit: false,
-        }
-    };
-    let size = surface.size;
-    Level { size, texels: (0..size[0] * size[1]).map(texel).collect() }
-}
-
 /// The work of a level.
 struct Job<'a> {
     settings: &'a Settings,
@@ -244,7 +290,11 @@ struct Job<'a> {
 type Row = Vec<(Texel, Vec<Kept>, f32, f64)>;
 
 impl Job<'_> {
-    fn run(&self, cancel: &Cancel, tell: &(dyn Fn(usize) + Sync)) -> Result<(Level, Store), FilterError> {
+    fn run(
+        &self,
+        cancel: &Cancel,
+        tell: &(dyn Fn(usize) + Sync),
+    ) -> Result<(Level<'static>, Store), FilterError> {
         let [width, height] = self.size;
         let one = |fitter: &mut Fitter, y: usize| -> Result<Row, FilterError> {
             cancel.check()?;
@@ -253,19 +303,22 @@ impl Job<'_> {
             row
         };
         let new = || Fitter::new(self.settings.effort);
-        let rows: Result<Vec<Row>, FilterError> = (0..height).into_par_iter().map_init(new, one).collect();
-        let mut level = Level { size: self.size, texels: Vec::with_capacity(width * height) };
+        let mut texels = Vec::with_capacity(width * height);
         let mut store = Store { width, starts: vec![0], ..Store::default() };
-        for (texel, kept, error, least) in rows?.into_iter().flatten() {
-            level.texels.push(texel);
-            if self.keep {
-                store.facets.extend(kept);
-                store.starts.push(store.facets.len());
-                store.errors.push(error);
-                store.least.push(least);
+        for first in (0..height).step_by(BAND) {
+            let band = first..height.min(first + BAND);
+            let rows: Result<Vec<Row>, FilterError> = band.into_par_iter().map_init(new, one).collect();
+            for (texel, kept, error, least) in rows?.into_iter().flatten() {
+                texels.push(texel);
+                if self.keep {
+                    store.facets.extend(kept);
+                    store.starts.push(store.facets.len());
+                    store.errors.push(error);
+                    store.least.push(least);
+                }
             }
         }
-        Ok((level, store))
+        Ok((Level::of(self.size, texels), store))
     }
 
     #[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]

@@ -57,10 +57,13 @@ pub struct Fitted {
 /// Buffers and lattices of the fit: one a thread.
 #[derive(Debug, Clone)]
 pub struct Fitter {
-    nodes: Nodes,
+    pub(super) nodes: Nodes,
     coarse: Lattice,
+    /// Of the scan of `round`, and of its end.
+    pub(super) scan: Lattice,
+    pub(super) middle: Lattice,
     /// Of 256 nodes and more, each twice as many as the one before.
-    fine: Vec<Lattice>,
+    pub(super) fine: Vec<Lattice>,
     effort: Effort,
 }
 
@@ -189,25 +192,32 @@ impl Fitter {
     #[must_use]
     pub fn new(effort: Effort) -> Fitter {
         let (coarse, fine) = match effort {
-            Effort::Fast => (96, vec![256, 512, 1024, 2048]),
+            Effort::Fast => (64, vec![256, 512, 1024, 2048]),
             Effort::Exact => (1024, vec![16384]),
         };
         let fine = fine.into_iter().map(Lattice::new).collect();
-        Fitter { nodes: Nodes::default(), coarse: Lattice::new(coarse), fine, effort }
+        let (scan, middle) = (Lattice::new(48), Lattice::new(192));
+        Fitter { nodes: Nodes::default(), coarse: Lattice::new(coarse), scan, middle, fine, effort }
     }
 
     /// The nearest lobe. A constant footprint is its own answer, to the bit.
     #[must_use]
     pub fn fit(&mut self, footprint: &Footprint, centre: Centre, shape: Shape) -> Fitted {
+        let round = |f: &&Facet| shape == Shape::Anisotropic || f.is_round();
         if footprint.is_constant()
-            && let Some(f) = footprint.facets.first()
+            && let Some(f) = footprint.facets.first().filter(round)
         {
-            let lobe = Lobe::isotropic(f.normal, f.alpha);
+            let lobe = match shape {
+                Shape::Anisotropic => f.lobe(),
+                Shape::Isotropic => Lobe::isotropic(f.normal, f.alpha),
+            };
             return Fitted { lobe, distance: 0.0, doubt: 0.0, at_limit: false };
         }
-        let wide: Vec<Facet> =
-            footprint.facets.iter().map(|f| Facet { alpha: f.alpha.max(LEAST_ALPHA), ..*f }).collect();
+        let wide: Vec<Facet> = footprint.facets.iter().map(|f| f.wide(LEAST_ALPHA)).collect();
         let least = footprint.least.max(LEAST_ALPHA);
+        if self.effort == Effort::Fast && (centre, shape) == (Centre::Mean, Shape::Isotropic) {
+            return self.round(footprint, &wide, least);
+        }
         let starts = self.starts(footprint, &wide, least, centre, shape);
         let mut best: Option<(Lobe, f64)> = None;
         for start in starts {
@@ -224,7 +234,7 @@ impl Fitter {
         for _ in 0..rounds {
             let start = lobe.within(least, 1.0);
             let chart = [[start.alpha_max, start.alpha_min]];
-            let lattice = 1 + self.level(start.alpha_min / least);
+            let lattice = 1 + self.level((start.alpha_max * start.alpha_min).sqrt() / least);
             let found = self.descend(&start, &chart, footprint, &wide, (centre, shape), lattice, 12);
             lobe = found.0;
             fitted = Some(found);
@@ -234,7 +244,7 @@ impl Fitter {
     }
 
     /// Which lattice: more nodes where narrow facets stand apart under a wide lobe.
-    fn level(&self, ratio: f64) -> usize {
+    pub(super) fn level(&self, ratio: f64) -> usize {
         let wanted = [4.0, 6.0, 9.0].iter().filter(|limit| ratio > **limit).count();
         wanted.min(self.fine.len() - 1)
     }
@@ -252,13 +262,19 @@ impl Fitter {
         steps: usize,
     ) -> (Lobe, f64, f64, bool) {
         let base = start.axes();
+        let coarse = lattice == 0;
         let lattice = lattice.checked_sub(1).map_or(&self.coarse, |i| &self.fine[i]);
         self.nodes.place(&base, charts, lattice, facets);
         let least = footprint.least.max(LEAST_ALPHA);
         let widths = [start.alpha_max, start.alpha_min];
         let problem =
             Problem { nodes: &self.nodes, base, start: widths, centre, shape, mass: footprint.mass, least };
-        let (at, mut distance) = descent::descend(&problem, [0.0; descent::MOST], steps);
+        let enough = match (self.effort, coarse) {
+            (Effort::Exact, _) => 0.0,
+            (Effort::Fast, true) => 1e-2,
+            (Effort::Fast, false) => 2e-3,
+        };
+        let (at, mut distance) = descent::descend(&problem, [0.0; descent::MOST], steps, enough);
         let free = problem.lobe(&at);
         let mut doubt = problem.distance(&at).1;
         let lobe = free.within(least, 1.0);
@@ -284,8 +300,7 @@ impl Fitter {
     /// D between a lobe and a footprint, with its doubt.
     #[must_use]
     pub fn distance(&mut self, lobe: &Lobe, footprint: &Footprint) -> (f64, f64) {
-        let wide: Vec<Facet> =
-            footprint.facets.iter().map(|f| Facet { alpha: f.alpha.max(LEAST_ALPHA), ..*f }).collect();
+        let wide: Vec<Facet> = footprint.facets.iter().map(|f| f.wide(LEAST_ALPHA)).collect();
         let (distance, doubt) = self.judge(&lobe.within(LEAST_ALPHA, f64::MAX), footprint, &wide, 1);
         (distance, doubt + footprint.merge_error)
     }
@@ -306,37 +321,40 @@ impl Fitter {
             }
         };
         let mut all =
-            vec![round(robust(footprint, facets, centre)), round(densest(footprint, facets, centre))];
+            vec![round(robust(footprint, facets, centre, 8)), round(densest(footprint, facets, centre))];
         let told: Vec<f64> = all.iter().map(|lobe| self.judge(lobe, footprint, facets, 0).0).collect();
         if told[1] < told[0] {
             all.swap(0, 1);
         }
         let [better, worse] = [told[0].min(told[1]), told[0].max(told[1])];
-        if worse > 1.6 * better && self.effort == Effort::Fast {
+        // few facets have more answers that are far apart, and cost less
+        let near = if facets.len() > 8 { 1.3 } else { 1.6 };
+        if worse > near * better && self.effort == Effort::Fast {
             all.truncate(1);
         }
         all
     }
 }
 
-/// A robust mean and scatter of the slopes about the mean normal, by eight steps of reweighting.
-fn robust(footprint: &Footprint, facets: &[Facet], centre: Centre) -> Lobe {
+/// A robust mean and scatter of the slopes about the mean normal, by so many steps of reweighting.
+pub(super) fn robust(footprint: &Footprint, facets: &[Facet], centre: Centre, steps: usize) -> Lobe {
     let normal = footprint.normal();
     let [t, b, n] = lobe::frame(normal);
-    let slopes: Vec<(DVec2, f64, f64)> =
-        facets.iter().map(|f| (Footprint::slope(normal, f.normal), f.alpha * f.alpha, f.weight)).collect();
+    let slopes: Vec<(DVec2, DMat2, f64)> =
+        facets.iter().map(|f| (Footprint::slope(normal, f.normal), f.square(), f.weight)).collect();
     let mut mean = DVec2::ZERO;
     let mut scatter = DMat2::IDENTITY * footprint.square.max(LEAST_ALPHA * LEAST_ALPHA);
-    for _ in 0..8 {
+    for _ in 0..steps {
         let inverse = scatter.inverse();
-        let own = 0.25 * (inverse.x_axis.x + inverse.y_axis.y);
         let (mut sum, mut first, mut second) = (0.0, DVec2::ZERO, DMat2::ZERO);
         for (slope, square, weight) in &slopes {
             let d = *slope - mean;
-            let u = 2.0 * weight / (1.0 + d.dot(inverse * d) + own * square);
+            let own = inverse * *square;
+            let own = 0.25 * (own.x_axis.x + own.y_axis.y);
+            let u = 2.0 * weight / (1.0 + d.dot(inverse * d) + own);
             sum += u;
             first += *slope * u;
-            second += (DMat2::from_cols(d * d.x, d * d.y) + DMat2::IDENTITY * (0.5 * square)) * u;
+            second += (DMat2::from_cols(d * d.x, d * d.y) + *square * 0.5) * u;
         }
         if centre == Centre::Free {
             mean = first / sum;

@@ -1,6 +1,6 @@
 //! Footprints: the facets that a texel of a smaller level stands for, and what is known of them at a glance.
 
-use super::lobe::{Facet, LEAST_ALPHA, frame};
+use super::lobe::{Facet, LEAST_ALPHA, Lobe, frame};
 use glam::{DMat2, DVec2, DVec3};
 
 /// Most facets that a lobe is fitted to; larger footprints are merged to as many, of neighbours in slope.
@@ -15,7 +15,7 @@ pub struct Footprint {
     pub mean: DVec3,
     /// 1 − |mean|², as the mean square distance of the normals from their mean: it keeps its digits for flat footprints.
     pub spread: f64,
-    /// Mean of α².
+    /// Mean of α²; of two widths the mean of both.
     pub square: f64,
     /// Smallest α.
     pub least: f64,
@@ -33,7 +33,7 @@ impl Footprint {
         let (mut mean, mut square, mut least, mut mass) = (DVec3::ZERO, 0.0, f64::INFINITY, 0.0);
         for f in &facets {
             mean += f.normal * f.weight;
-            square += f.alpha * f.alpha * f.weight;
+            square += 0.5 * (f.alpha * f.alpha + f.alpha_max * f.alpha_max) * f.weight;
             least = least.min(f.alpha);
             mass += f.mass() * f.weight;
         }
@@ -51,7 +51,8 @@ impl Footprint {
     /// True if all facets are one, to the bit.
     #[must_use]
     pub fn is_constant(&self) -> bool {
-        let same = |f: &Facet, g: &Facet| f.normal == g.normal && f.alpha.to_bits() == g.alpha.to_bits();
+        let bits = |f: &Facet| [f.alpha, f.alpha_max, f.angle].map(f64::to_bits);
+        let same = |f: &Facet, g: &Facet| f.normal == g.normal && bits(f) == bits(g);
         self.facets.first().is_some_and(|first| self.facets.iter().all(|f| same(f, first)))
     }
 
@@ -116,7 +117,14 @@ impl Footprint {
 }
 
 /// What parts of a footprint are cut by.
-const KEYS: [fn(&Facet) -> f64; 3] = [|f| f.normal.x, |f| f.normal.y, |f| f.alpha];
+const KEYS: [fn(&Facet) -> f64; 5] = [
+    |f| f.normal.x,
+    |f| f.normal.y,
+    |f| f.alpha,
+    // of two widths how much wider the one is, along x and along the diagonal
+    |f| if f.is_round() { 0.0 } else { (f.alpha_max - f.alpha) * libm::cos(2.0 * f.angle) },
+    |f| if f.is_round() { 0.0 } else { (f.alpha_max - f.alpha) * libm::sin(2.0 * f.angle) },
+];
 
 /// Facets in a row.
 #[derive(Debug, Clone, Copy)]
@@ -173,5 +181,11 @@ fn merge(facets: &[Facet]) -> (Facet, f64) {
     let root = facets.iter().map(|f| f.alpha * f.weight).sum::<f64>() / weight;
     // a tenth: of the losses that were measured none is above a twelfth
     let loss = 0.1 * weight * (variance / (square + variance)).max((square / (root * root) - 1.0).max(0.0));
-    (Facet { normal: mean.normalize(), alpha: width, weight }, loss)
+    let normal = mean.normalize();
+    if facets.iter().all(Facet::is_round) {
+        return (Facet::round(normal, width, weight), loss);
+    }
+    // the frames of neighbours differ by less than their normals do
+    let tensor = facets.iter().fold(DMat2::ZERO, |m, f| m + f.square() * f.weight) * (1.0 / weight);
+    (Facet::of(&Lobe::from_square(normal, tensor + DMat2::IDENTITY * (1.8 * variance)), weight), loss)
 }

@@ -13,17 +13,64 @@ pub const LEAST_ALPHA: f64 = 1e-3;
 pub struct Facet {
     /// Unit normal.
     pub normal: DVec3,
-    /// Width α, in (0, 1].
+    /// Width α, in (0, 1]; of two the smaller one.
     pub alpha: f64,
     /// Share of the footprint; the shares of a footprint sum to 1.
     pub weight: f64,
+    /// The larger width; of one the same.
+    pub alpha_max: f64,
+    /// Direction of the larger width in [`frame`], rad; 0 of one.
+    pub angle: f64,
 }
 
 impl Facet {
     /// A facet of these slopes: n = normalise(−x, −y, 1).
     #[must_use]
     pub fn from_slope(slope: DVec2, alpha: f64, weight: f64) -> Facet {
-        Facet { normal: DVec3::new(-slope.x, -slope.y, 1.0).normalize(), alpha, weight }
+        Facet::round(DVec3::new(-slope.x, -slope.y, 1.0).normalize(), alpha, weight)
+    }
+
+    /// A facet of one width.
+    #[must_use]
+    pub const fn round(normal: DVec3, alpha: f64, weight: f64) -> Facet {
+        Facet { normal, alpha, weight, alpha_max: alpha, angle: 0.0 }
+    }
+
+    /// A facet of this lobe.
+    #[must_use]
+    pub const fn of(lobe: &Lobe, weight: f64) -> Facet {
+        let Lobe { normal, alpha_max, alpha_min, angle } = *lobe;
+        Facet { normal, alpha: alpha_min, weight, alpha_max, angle }
+    }
+
+    /// Its lobe.
+    #[must_use]
+    pub const fn lobe(&self) -> Lobe {
+        Lobe { normal: self.normal, alpha_max: self.alpha_max, alpha_min: self.alpha, angle: self.angle }
+    }
+
+    /// True of one width.
+    #[must_use]
+    pub fn is_round(&self) -> bool {
+        self.alpha_max <= self.alpha
+    }
+
+    /// Widths of at least `least`.
+    #[must_use]
+    pub fn wide(&self, least: f64) -> Facet {
+        Facet { alpha: self.alpha.max(least), alpha_max: self.alpha_max.max(least), ..*self }
+    }
+
+    /// The squared widths as a matrix, in the frame of the facet.
+    #[must_use]
+    pub fn square(&self) -> DMat2 {
+        let (small, large) = (self.alpha * self.alpha, self.alpha_max * self.alpha_max);
+        if self.is_round() {
+            return DMat2::IDENTITY * small;
+        }
+        let (sin, cos) = libm::sincos(self.angle);
+        let along = DVec2::new(cos, sin);
+        DMat2::from_cols(along * along.x, along * along.y) * (large - small) + DMat2::IDENTITY * small
     }
 
     /// `D(h) (n·h)`, D of GGX. Unit sr⁻¹; 0 behind the facet.
@@ -31,6 +78,9 @@ impl Facet {
     /// sin² comes from |h − n|², which keeps its digits for narrow lobes. Source: [Walter2007](crate::cite::WALTER_2007) Eq. 33.
     #[must_use]
     pub fn density(&self, h: DVec3) -> f64 {
+        if !self.is_round() {
+            return self.lobe().density(h);
+        }
         let d = (h - self.normal).length_squared();
         let cos = 1.0 - 0.5 * d;
         if cos <= 0.0 {
@@ -44,7 +94,7 @@ impl Facet {
     /// The part of the lobe that lies above the mesh.
     #[must_use]
     pub fn mass(&self) -> f64 {
-        mass(self.normal, self.alpha * self.alpha)
+        if self.is_round() { mass(self.normal, self.alpha * self.alpha) } else { self.lobe().mass() }
     }
 }
 

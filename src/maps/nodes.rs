@@ -97,7 +97,14 @@ impl Nodes {
         self.weigh(charts, [base[0].z as f32, base[1].z as f32, base[2].z as f32]);
         let to_base = DMat3::from_cols(base[0], base[1], base[2]).transpose();
         for facet in facets {
-            self.add(single(to_base * facet.normal), facet.alpha as f32, facet.weight as f32);
+            let normal = single(to_base * facet.normal);
+            if facet.is_round() {
+                self.add(normal, facet.alpha as f32, facet.weight as f32);
+            } else {
+                let along = single(to_base * facet.lobe().axes()[0]);
+                let widths = [facet.alpha_max as f32, facet.alpha as f32];
+                self.add_stretched(normal, along, widths, facet.weight as f32);
+            }
         }
     }
 
@@ -133,6 +140,53 @@ impl Nodes {
             let cos = if cos > 0.0 { cos } else { 0.0 };
             *t += scale * cos / (q * q);
         }
+    }
+
+    /// The same of a facet of two widths, the first along `along`.
+    fn add_stretched(&mut self, n: [f32; 3], along: [f32; 3], [wide, narrow]: [f32; 2], weight: f32) {
+        let (a, b) = (1.0 / (wide * wide), 1.0 / (narrow * narrow));
+        let scale = weight / (wide * narrow) * FRAC_1_PI;
+        for (((t, &x), &y), &z) in self.truth.iter_mut().zip(&self.x).zip(&self.y).zip(&self.z) {
+            let (dx, dy, dz) = (x - n[0], y - n[1], z - n[2]);
+            let d = dx * dx + dy * dy + dz * dz;
+            let cos = 1.0 - 0.5 * d;
+            // along and n are perpendicular: the difference keeps the digits
+            let u = along[0] * dx + along[1] * dy + along[2] * dz;
+            let rest = d * (1.0 - 0.25 * d) - u * u;
+            let rest = if rest > 0.0 { rest } else { 0.0 };
+            let q = u * u * a + rest * b + cos * cos;
+            let cos = if cos > 0.0 { cos } else { 0.0 };
+            *t += scale * cos / (q * q);
+        }
+    }
+
+    /// ∫ min(truth, lobe) of a lobe of one width 1/l in the frame of the nodes; its slope to ln l, and how far the
+    /// integral can be trusted, as [`overlap`](Nodes::overlap) has it.
+    #[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]
+    pub(super) fn round(&self, l: f64) -> (f64, f64, f64) {
+        let square = (l * l) as f32;
+        let k = square / PI;
+        let [mut value, mut scale, mut steep] = [[0f32; LANES]; 3];
+        let lists = [&self.z, &self.truth, &self.weight];
+        let [zs, ts, ws] = lists.map(|list| list.chunks_exact(LANES));
+        for ((zs, ts), ws) in zs.zip(ts).zip(ws) {
+            for i in 0..LANES {
+                let z = zs[i];
+                let sin2 = 1.0 - z * z;
+                let inverse = 1.0 / (square * sin2 + z * z);
+                let density = k * z * inverse * inverse;
+                let below = density < ts[i];
+                value[i] += ws[i] * if below { density } else { ts[i] };
+                let own = if below { ws[i] * density } else { 0.0 };
+                scale[i] += own;
+                steep[i] += own * inverse * sin2;
+            }
+        }
+        let sum = |s: &[f32; LANES]| s.iter().map(|v| f64::from(*v)).sum::<f64>();
+        let doubt = value.chunks_exact(2).map(|p| f64::from(p[0]) - f64::from(p[1])).sum::<f64>().abs();
+        // d density / d ln l = density (2 - 4 l^2 sin^2 / q)
+        let slope = 2.0 * sum(&scale) - 4.0 * l * l * sum(&steep);
+        (sum(&value), slope, doubt)
     }
 
     /// The integral and its derivatives. Without `TURNS` the lobe stands in the frame of the nodes.

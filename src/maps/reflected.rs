@@ -15,7 +15,7 @@ use std::f64::consts::{FRAC_PI_4, PI, TAU};
 const NODES: [usize; 2] = [192, 128];
 
 /// What light of direction l meets: f(l, v) (n·l) of a lobe, unit sr⁻¹.
-fn reflected(lobe: &Prepared, v: DVec3, l: DVec3) -> f64 {
+pub(super) fn reflected(lobe: &Prepared, v: DVec3, l: DVec3) -> f64 {
     let [t, b, n] = lobe.axes;
     let local = |w: DVec3| DVec3::new(t.dot(w), b.dot(w), n.dot(w));
     let (lv, ll) = (local(v), local(l));
@@ -34,14 +34,20 @@ fn reflected(lobe: &Prepared, v: DVec3, l: DVec3) -> f64 {
     d / (4.0 * lv.z * (1.0 + lambda(lv) + lambda(ll)))
 }
 
+/// What a lobe sends to `v` of light from `l`, times the cosine n·l of its own normal: f (n·l), unit sr⁻¹; the Fresnel factor is 1.
+#[must_use]
+pub fn light(lobe: &Lobe, v: DVec3, l: DVec3) -> f64 {
+    reflected(&Prepared::new(lobe), v, l)
+}
+
 /// A lobe with its axes.
-struct Prepared {
+pub(super) struct Prepared {
     axes: [DVec3; 3],
     alphas: [f64; 2],
 }
 
 impl Prepared {
-    fn new(lobe: &Lobe) -> Prepared {
+    pub(super) fn new(lobe: &Lobe) -> Prepared {
         let alphas = [lobe.alpha_max.max(LEAST_ALPHA), lobe.alpha_min.max(LEAST_ALPHA)];
         Prepared { axes: lobe.axes(), alphas }
     }
@@ -58,11 +64,8 @@ struct View {
 impl View {
     /// Rings round the mirror direction, as wide as a lobe of width `alpha` reflects.
     fn new(v: DVec3, alpha: f64, footprint: &Footprint) -> View {
-        let facets: Vec<(Prepared, f64)> = footprint
-            .facets
-            .iter()
-            .map(|f| (Prepared::new(&Lobe::isotropic(f.normal, f.alpha)), f.weight))
-            .collect();
+        let facets: Vec<(Prepared, f64)> =
+            footprint.facets.iter().map(|f| (Prepared::new(&f.lobe()), f.weight)).collect();
         let mirror = DVec3::new(-v.x, -v.y, v.z);
         let [t, b, n] = lobe::frame(mirror);
         let mut nodes = Vec::with_capacity(NODES[0] * NODES[1]);

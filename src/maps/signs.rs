@@ -8,13 +8,12 @@ use super::filter::Level;
 /// Directions of all levels, `[cos, sin]` from the tangent, of length 1.
 #[must_use]
 #[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]
-pub fn directions(levels: &[Level]) -> Vec<Vec<[f32; 2]>> {
+pub fn directions(levels: &[Level<'_>]) -> Vec<Vec<[f32; 2]>> {
     let mut out: Vec<Vec<[f32; 2]>> = Vec::with_capacity(levels.len());
     let mut above: Option<([usize; 2], Vec<[f32; 2]>)> = None;
     for level in levels.iter().rev() {
-        let strength: Vec<f32> = level.texels.iter().map(|t| t.roughness_max - t.roughness).collect();
+        let strength: Vec<f32> = level.iter().map(|t| t.roughness_max - t.roughness).collect();
         let mut own: Vec<[f32; 2]> = level
-            .texels
             .iter()
             .zip(&strength)
             .map(|(t, s)| {
@@ -88,7 +87,7 @@ mod tests {
     use super::*;
     use crate::maps::filter::Texel;
 
-    fn level(size: [usize; 2], angle: impl Fn(usize, usize) -> f32) -> Level {
+    fn level(size: [usize; 2], angle: impl Fn(usize, usize) -> f32) -> Level<'static> {
         let texel = |i: usize| Texel {
             normal: [0.0, 0.0, 1.0],
             roughness: 0.3,
@@ -98,7 +97,7 @@ mod tests {
             doubt: 0.0,
             at_limit: false,
         };
-        Level { size, texels: (0..size[0] * size[1]).map(texel).collect() }
+        Level::of(size, (0..size[0] * size[1]).map(texel).collect())
     }
 
     /// Axes that waver about the bitangent: as angles they jump from +90 to -90 degrees.

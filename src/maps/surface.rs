@@ -32,6 +32,8 @@ pub struct Surface {
     pub normals: Field<[f32; 3]>,
     /// Roughness r = √α, in [0, 1].
     pub roughness: Field<f32>,
+    /// Of lobes of two widths: √ of the larger one, and its direction in rad from the tangent.
+    pub stretch: Option<Vec<[f32; 2]>>,
     /// D between the lobes that the map told of and these, where it told of lobes of another kind.
     pub residual: Field<f32>,
 }
@@ -42,7 +44,11 @@ impl Surface {
     pub fn facet(&self, texel: usize, weight: f64) -> Facet {
         let r = f64::from(self.roughness.at(texel));
         let [x, y, z] = self.normals.at(texel).map(f64::from);
-        Facet { normal: DVec3::new(x, y, z).normalize(), alpha: r * r, weight }
+        let facet = Facet::round(DVec3::new(x, y, z).normalize(), r * r, weight);
+        match self.stretch.as_ref().map(|s| s[texel].map(f64::from)) {
+            Some([wide, angle]) if wide > r => Facet { alpha_max: wide * wide, angle, ..facet },
+            _ => facet,
+        }
     }
 }
 
@@ -78,6 +84,12 @@ pub enum TexelFault {
     #[error("the normal points along the surface or into it (z = {0})")]
     Below(
         /// z of the unit normal.
+        f64,
+    ),
+    /// A colour or a factor outside [0, 1].
+    #[error("value {0} outside [0, 1]")]
+    Code(
+        /// The value.
         f64,
     ),
     /// Outside [0, 1].

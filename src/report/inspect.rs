@@ -37,7 +37,9 @@ pub fn inspect(name: &str, image: &Image) -> String {
         }
         Some(Claim::Unknown { text, fault }) => {
             planes(&mut lines, image, None);
-            if !super::inspect_map::map(&mut lines, text) {
+            if super::inspect_map::map(&mut lines, text) {
+                super::inspect_map::histograms(&mut lines, image);
+            } else {
                 lines.plain("The file has brdfbake metadata that this version does not understand:");
                 lines.item("reason", fault);
                 lines.item("text", &text.chars().take(2000).collect::<String>());

@@ -1,6 +1,8 @@
 //! What a parameter map says of itself.
 
-use super::text::Lines;
+use super::sheet::counts;
+use super::text::{Lines, number};
+use crate::encode::Image;
 use serde_json::Value;
 
 /// Tells of the metadata of a map; false if they are of something else.
@@ -36,8 +38,62 @@ pub(super) fn map(lines: &mut Lines, text: &str) -> bool {
             &format!("level {} ({}, {}): D {d:.4}", number("level"), number("x"), number("y")),
         );
     }
+    conversion(lines, &json["conversion"]);
+    lobes(lines, &json["sbrdf"]);
     lines.item("made by", &word("tool"));
     true
+}
+
+/// What a conversion of other lobes cost.
+fn conversion(lines: &mut Lines, json: &Value) {
+    let number = |v: &Value| v.as_f64().unwrap_or(f64::NAN);
+    let Some(from) = json["from"].as_str() else { return };
+    let pair = |key: &str| format!("mean {:.4}, largest {:.4}", number(&json[key][0]), number(&json[key][1]));
+    lines.item("converted", &format!("from {from} ({})", json["rule"].as_str().unwrap_or("?")));
+    lines.item("", &format!("D {}\nE differs: {}", pair("distance"), pair("energy")));
+    let gained = &json["gained"];
+    if gained["texels"].as_u64().unwrap_or(0) > 0 {
+        let (n, most) = (&gained["texels"], number(&gained["largest"]));
+        lines.item("finding", &format!("{n} texels reflect more than before, {most:.4} at most"));
+    }
+}
+
+/// What is told of lobes of Lafortune.
+fn lobes(lines: &mut Lines, json: &Value) {
+    let number = |v: &Value| v.as_f64().unwrap_or(f64::NAN);
+    let Some(normalise) = json["normalise"].as_str() else { return };
+    let way = if json["reciprocal"].as_bool() == Some(true) { "reciprocal" } else { "not reciprocal" };
+    lines.item("SBRDF", &format!("{} lobes of Lafortune, {normalise} integral, {way}", json["lobes"]));
+    for (k, level) in json["levels"].as_array().into_iter().flatten().enumerate() {
+        let (mean, largest) = (number(&level["mean"]), number(&level["largest"]));
+        lines.item("", &format!("level {k}: residual mean {mean:.4}, largest {largest:.4}"));
+    }
+    let storage = &json["storage"];
+    lines.item(
+        "",
+        &format!(
+            "storage changes the lobes by {:.4} (largest {:.4})",
+            number(&storage[0]),
+            number(&storage[1])
+        ),
+    );
+}
+
+/// A histogram of every channel: sixteen parts of its range, each as high as its share of the fullest.
+pub(super) fn histograms(lines: &mut Lines, image: &Image) {
+    const BARS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+    lines.plain("Histograms of the first level");
+    for plane in &image.channels {
+        let s = plane.statistics();
+        if s.finite == 0 {
+            continue;
+        }
+        let counts = counts(plane, [s.min, s.max], 16);
+        let most = counts.iter().copied().max().unwrap_or(0).max(1);
+        // no part that holds anything is blank
+        let bars: String = counts.iter().map(|c| BARS[(c * 8).div_ceil(most)]).collect();
+        lines.item(&plane.name, &format!("{} |{bars}| {}", number(s.min), number(s.max)));
+    }
 }
 
 fn level(level: &Value) -> String {

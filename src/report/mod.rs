@@ -16,6 +16,7 @@ pub mod page;
 pub mod plot;
 pub mod reading;
 pub mod recognise;
+pub mod sheet;
 pub mod split;
 pub mod stress;
 pub mod text;

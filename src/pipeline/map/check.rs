@@ -83,7 +83,7 @@ struct Sample {
 pub(super) fn measure(
     request: &MapRequest,
     surface: &Surface,
-    levels: &[Level],
+    levels: &[Level<'_>],
     maps: &[Map],
     cancel: &Cancel,
 ) -> Result<Vec<Option<Measured>>, MapError> {
@@ -99,7 +99,7 @@ pub(super) fn measure(
             cancel.check()?;
             let facets = gather(surface, &cover, texel % level.size[0], texel / level.size[0]);
             let Some(footprint) = Footprint::new(facets) else { return Ok(None) };
-            let own = &level.texels[*texel];
+            let own = &level.at(*texel);
             let light = request.filter.objective == Objective::Reflected;
             let mut distance = |lobe: &Lobe| {
                 if light {
@@ -167,16 +167,17 @@ fn sum(samples: &[Sample]) -> Measured {
 }
 
 /// Texels of a level: all, or a seeded choice and the worst.
-fn choose(level: &Level, k: usize, count: usize) -> Vec<usize> {
-    let n = level.texels.len();
+fn choose(level: &Level<'_>, k: usize, count: usize) -> Vec<usize> {
+    let n = level.len();
     if n <= count + WORST {
         return (0..n).collect();
     }
-    let mut worst: Vec<usize> = (0..n).collect();
-    worst.sort_by(|a, b| level.texels[*b].distance.total_cmp(&level.texels[*a].distance));
-    worst.truncate(WORST);
+    let mut worst: Vec<(f32, usize)> = level.iter().map(|t| t.distance).zip(0..).collect();
+    let order = |a: &(f32, usize), b: &(f32, usize)| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1));
+    worst.select_nth_unstable_by(WORST, order);
+    let worst = worst.into_iter().take(WORST).map(|w| w.1);
     let seeded = (0..count).map(|i| Seeds::new((k as u64) << 32 | i as u64).index(n));
-    let mut chosen: Vec<usize> = worst.into_iter().chain(seeded).collect();
+    let mut chosen: Vec<usize> = worst.chain(seeded).collect();
     chosen.sort_unstable();
     chosen.dedup();
     chosen

@@ -64,7 +64,7 @@ pub(super) fn read(planned: &PlannedMap, cancel: &Cancel) -> Result<Sources, Map
         }
     };
     let packed = packed(request.packing, whole, size);
-    Ok(Sources { surface: Surface { size, normals, roughness, residual }, packed, files })
+    Ok(Sources { surface: Surface { size, normals, roughness, stretch: None, residual }, packed, files })
 }
 
 /// What the roughness is packed with.

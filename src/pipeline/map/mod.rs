@@ -7,10 +7,12 @@
 mod check;
 mod input;
 mod output;
+mod pictured;
 mod record;
 
 pub use crate::plan::map::{FromLobe, Input, MapRequest, Output, RoughnessInput};
 pub use check::{Measured, RuleMeasured, StoredMeasured};
+pub use pictured::Pictured;
 pub use record::{InputRecord, Job, LevelRecord, MapEntry, MapFile, MapRecord, Place};
 
 use super::{Event, MANIFEST, PipelineError, Progress, Settings};

@@ -67,14 +67,14 @@ fn channel(id: &str, meaning: &str, range: [f64; 2]) -> Channel {
 pub(super) fn plan(
     request: &MapRequest,
     sources: &Sources,
-    levels: &[Level],
+    levels: &[Level<'_>],
     cancel: &Cancel,
 ) -> Result<Vec<Map>, MapError> {
     let one = |kind| map(kind, request, sources, levels).compressed(request, cancel);
     request.kinds().into_iter().map(one).collect()
 }
 
-fn map(kind: Kind, request: &MapRequest, sources: &Sources, levels: &[Level]) -> Map {
+fn map(kind: Kind, request: &MapRequest, sources: &Sources, levels: &[Level<'_>]) -> Map {
     let signed = [-1.0, 1.0];
     let unit = [0.0, 1.0];
     let (channels, levels) = match kind {
@@ -96,9 +96,9 @@ fn map(kind: Kind, request: &MapRequest, sources: &Sources, levels: &[Level]) ->
                 channel("strength", "sqrt((alpha_max - alpha_min)/(1 - alpha_min))", unit),
             ];
             let directions = signs::directions(levels);
-            let level = |(level, own): (&Level, &Vec<[f32; 2]>)| MipLevel {
+            let level = |(level, own): (&Level<'_>, &Vec<[f32; 2]>)| MipLevel {
                 size: level.size,
-                values: level.texels.iter().zip(own).flat_map(|(t, [x, y])| [*x, *y, strength(t)]).collect(),
+                values: level.iter().zip(own).flat_map(|(t, [x, y])| [*x, *y, strength(&t)]).collect(),
             };
             (channels, levels.iter().zip(&directions).map(level).collect())
         }
@@ -117,8 +117,9 @@ fn map(kind: Kind, request: &MapRequest, sources: &Sources, levels: &[Level]) ->
     Map { kind, channels, levels, blocks: Vec::new() }
 }
 
-fn each(levels: &[Level], values: impl Fn(&Texel) -> Vec<f32>) -> Vec<MipLevel> {
-    let level = |l: &Level| MipLevel { size: l.size, values: l.texels.iter().flat_map(&values).collect() };
+fn each(levels: &[Level<'_>], values: impl Fn(&Texel) -> Vec<f32>) -> Vec<MipLevel> {
+    let level =
+        |l: &Level<'_>| MipLevel { size: l.size, values: l.iter().flat_map(|t| values(&t)).collect() };
     levels.iter().map(level).collect()
 }
 
@@ -130,7 +131,7 @@ fn strength(t: &Texel) -> f32 {
 }
 
 /// The roughness, among the channels that it was packed with; those are shrunk by area.
-fn roughness(sources: &Sources, levels: &[Level]) -> Map {
+fn roughness(sources: &Sources, levels: &[Level<'_>]) -> Map {
     let own = channel(
         "roughness",
         "r = sqrt(alpha) of the lobe; of an anisotropic one that of alpha_min",
@@ -159,8 +160,8 @@ fn roughness(sources: &Sources, levels: &[Level]) -> Map {
             }
             before = level.size;
         }
-        let mut values = Vec::with_capacity(level.texels.len() * n);
-        for (i, texel) in level.texels.iter().enumerate() {
+        let mut values = Vec::with_capacity(level.len() * n);
+        for (i, texel) in level.iter().enumerate() {
             values.extend((0..n).map(|c| if c == *index { texel.roughness } else { planes[c][i] }));
         }
         out.push(MipLevel { size: level.size, values });

@@ -4,6 +4,7 @@ use super::RoughnessInput;
 use super::check::Measured;
 use super::input::Sources;
 use super::output::File;
+use super::pictured::{self, Pictured};
 use crate::encode::Storage;
 use crate::grid::Channel;
 use crate::maps::Level;
@@ -50,6 +51,9 @@ pub struct MapRecord {
     pub levels: Vec<LevelRecord>,
     /// Texels that the lobe is farthest from, of all levels.
     pub worst: Vec<Place>,
+    /// What the first of them stand for, as a contact sheet draws it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pictured: Vec<Pictured>,
 }
 
 /// Name and hash, as tables have them.
@@ -173,7 +177,7 @@ pub(super) fn record(
     plan: &str,
     planned: &PlannedMap,
     sources: &Sources,
-    levels: &[Level],
+    levels: &[Level<'_>],
     measured: Vec<Option<Measured>>,
 ) -> MapRecord {
     let request = &planned.asked;
@@ -191,6 +195,7 @@ pub(super) fn record(
         let (role, file) = ("roughness".to_owned(), r.to_string());
         inputs.push(InputRecord { role, file, blake3: String::new() });
     }
+    let listed = worst(levels);
     MapRecord {
         schema: SCHEMA,
         tool: crate::pipeline::manifest::tool(),
@@ -205,39 +210,50 @@ pub(super) fn record(
         effort: words::of(&words::EFFORTS, &filter.effort).to_owned(),
         objective: words::of(&words::OBJECTIVES, &filter.objective).to_owned(),
         levels: levels.iter().zip(measured).map(|(l, m)| level(l, m)).collect(),
-        worst: worst(levels),
+        pictured: pictured::pictured(&sources.surface, levels, &listed),
+        worst: listed,
     }
 }
 
-fn level(level: &Level, measured: Option<Measured>) -> LevelRecord {
-    let texels = &level.texels;
-    let fold = |f: fn(f32, f32) -> f32, of: fn(&crate::maps::Texel) -> f32, start: f32| {
-        texels.iter().map(of).fold(start, f)
+fn level(level: &Level<'_>, measured: Option<Measured>) -> LevelRecord {
+    let fold = |f: fn(f32, f32) -> f32, of: fn(crate::maps::Texel) -> f32, start: f32| {
+        level.iter().map(of).fold(start, f)
     };
     LevelRecord {
         size: level.size,
         roughness: [fold(f32::min, |t| t.roughness, 1.0), fold(f32::max, |t| t.roughness, 0.0)],
-        mean: texels.iter().map(|t| f64::from(t.distance)).sum::<f64>() / texels.len().max(1) as f64,
+        mean: level.iter().map(|t| f64::from(t.distance)).sum::<f64>() / level.len().max(1) as f64,
         largest: fold(f32::max, |t| t.distance, 0.0),
         doubt: fold(f32::max, |t| t.doubt, 0.0),
-        at_limit: texels.iter().filter(|t| t.at_limit).count(),
-        hopeless: texels.iter().filter(|t| t.distance >= HOPELESS).count(),
+        at_limit: level.iter().filter(|t| t.at_limit).count(),
+        hopeless: level.iter().filter(|t| t.distance >= HOPELESS).count(),
         measured,
     }
 }
 
 /// The texels with the largest D, and those at the limit before others of the same D.
-fn worst(levels: &[Level]) -> Vec<Place> {
+fn worst(levels: &[Level<'_>]) -> Vec<Place> {
     let mut all: Vec<Place> = Vec::new();
     for (k, level) in levels.iter().enumerate().skip(1) {
-        let place = |(i, t): (usize, &crate::maps::Texel)| Place {
+        let place = |(i, t): (usize, crate::maps::Texel)| Place {
             level: k,
             x: i % level.size[0],
             y: i / level.size[0],
             distance: t.distance,
             at_limit: t.at_limit,
         };
-        all.extend(level.texels.iter().enumerate().map(place).filter(|p| p.distance > 0.0));
+        // the order of the levels and texels decides between equals
+        let least = all.get(LISTED - 1).map_or(0.0, |p| p.distance);
+        let mut own: Vec<Place> =
+            level.iter().enumerate().map(place).filter(|p| p.distance > least).collect();
+        if own.len() > LISTED {
+            let order =
+                |a: &Place, b: &Place| b.distance.total_cmp(&a.distance).then((a.y, a.x).cmp(&(b.y, b.x)));
+            own.select_nth_unstable_by(LISTED, order);
+            own.truncate(LISTED);
+            own.sort_by(order);
+        }
+        all.extend(own);
         all.sort_by(|a, b| b.distance.total_cmp(&a.distance));
         all.truncate(LISTED);
     }
