@@ -175,7 +175,8 @@ fn texels_in_other_places_are_named() {
 
 #[test]
 fn labels_that_lie_are_named() {
-    let lies: [(&str, fn(&mut Provenance)); 7] = [
+    type Lie = fn(&mut Provenance);
+    let lies: [(&str, Lie); 7] = [
         ("shifted", |p| p.axes[1].axis.offset = 1.0),
         ("roughness", |p| p.axes[1].axis.quantity = Quantity::find("alpha").unwrap()),
         ("model ggx", |p| p.model.as_mut().unwrap().id = "beckmann".into()),

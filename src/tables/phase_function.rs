@@ -118,11 +118,8 @@ impl Phase {
         let hg = |g| phase::henyey_greenstein_at(g, below);
         match self.id {
             "rayleigh" => phase::rayleigh(cos),
-            "draine" => {
-                hg(self.g) * (1.0 + self.alpha * cos * cos)
-                    / (1.0 + self.alpha * (1.0 + 2.0 * self.g * self.g) / 3.0)
-            }
-            "fog" => phase::fog(self.diameter, cos),
+            "draine" => phase::draine_at(self.g, self.alpha, below),
+            "fog" => phase::fog_at(self.diameter, below),
             "isotropic" => phase::isotropic(),
             _ => hg(self.g),
         }

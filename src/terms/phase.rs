@@ -79,7 +79,14 @@ pub fn sample_henyey_greenstein(g: f64, u: f64) -> f64 {
 /// Accuracy: relative 1e-14 (`tests/terms.rs`).
 #[must_use]
 pub fn draine(g: f64, alpha: f64, cos_theta: f64) -> f64 {
-    henyey_greenstein(g, cos_theta) * (1.0 + alpha * cos_theta * cos_theta)
+    draine_at(g, alpha, 1.0 - cos_theta)
+}
+
+/// [`draine`] at `one_minus_cos = 1 − cos θ = 2 sin²(θ/2)`, which a narrow peak needs exactly.
+#[must_use]
+pub fn draine_at(g: f64, alpha: f64, one_minus_cos: f64) -> f64 {
+    let cos = 1.0 - one_minus_cos;
+    henyey_greenstein_at(g, one_minus_cos) * (1.0 + alpha * cos * cos)
         / (1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0)
 }
 
@@ -165,9 +172,15 @@ pub fn draine_mean_cosine(g: f64, alpha: f64) -> f64 {
 /// Accuracy: relative 1e-13 as a fit (`tests/terms.rs`); the fit itself is the authors'.
 #[must_use]
 pub fn fog(diameter_um: f64, cos_theta: f64) -> f64 {
+    fog_at(diameter_um, 1.0 - cos_theta)
+}
+
+/// [`fog`] at `one_minus_cos = 1 − cos θ = 2 sin²(θ/2)`, which its narrow peak needs exactly.
+#[must_use]
+pub fn fog_at(diameter_um: f64, one_minus_cos: f64) -> f64 {
     let f = Fog::new(diameter_um);
-    (1.0 - f.weight) * henyey_greenstein(f.g_hg, cos_theta)
-        + f.weight * draine(f.g_draine, f.alpha, cos_theta)
+    (1.0 - f.weight) * henyey_greenstein_at(f.g_hg, one_minus_cos)
+        + f.weight * draine_at(f.g_draine, f.alpha, one_minus_cos)
 }
 
 /// `cos θ` of a deflection by [`fog`]: u.x chooses the lobe, u.y the angle.
