@@ -91,7 +91,7 @@ pub fn read(path: &Path, bytes: &[u8], layout: Option<&Layout>, cancel: &Cancel)
     let Some(entry) = entry(path) else { return own };
     let mut image = match own {
         Err(ReadError::Unknown(_)) if entry.container == "raw" => {
-            bare(&entry.provenance)?.read(bytes, cancel)?
+            layout_of(&entry.provenance)?.read(bytes, cancel)?
         }
         own => own?,
     };
@@ -106,8 +106,16 @@ pub fn read(path: &Path, bytes: &[u8], layout: Option<&Layout>, cancel: &Cancel)
     Ok(image)
 }
 
+/// The table in a file of bare numbers, of which `p` tells.
+///
+/// # Errors
+/// [`ReadError`] if the file does not have as many bytes.
+pub fn bare(bytes: &[u8], p: &Provenance, cancel: &Cancel) -> Result<Image, ReadError> {
+    Ok(layout_of(p)?.read(bytes, cancel)?.described(p.clone()))
+}
+
 /// How the numbers of a table lie in a file of bare numbers.
-fn bare(p: &Provenance) -> Result<Layout, ReadError> {
+fn layout_of(p: &Provenance) -> Result<Layout, ReadError> {
     let fault =
         |what: &str| ReadError::Fault { format: "raw", fault: format!("{MANIFEST} beside it {what}") };
     let encoding = p.encoding.as_ref().ok_or_else(|| fault("does not say how it is stored"))?;
@@ -120,9 +128,12 @@ fn bare(p: &Provenance) -> Result<Layout, ReadError> {
 }
 
 impl Image {
-    /// The picture under the names and in the ranges of metadata that lie beside it.
+    /// The picture under the names and in the ranges of metadata that lie beside it. One that says itself what it holds stays as it is.
     #[must_use]
     pub fn described(self, provenance: Provenance) -> Image {
+        if self.provenance.is_some() {
+            return self;
+        }
         let named = provenance.encoding.as_ref().is_some_and(|e| !e.names.is_empty());
         let claim = Claim::Known(Box::new(provenance));
         let Claim::Known(p) = &claim else { return self };

@@ -45,6 +45,7 @@
 //! # A new container
 //! One file, one `pub mod` line, one line in [`ENCODERS`].
 
+mod apart;
 pub mod atomic;
 pub mod beside;
 mod blocks;
@@ -81,15 +82,14 @@ mod stoppable;
 pub mod storage;
 mod texels;
 pub mod text;
-pub mod told;
 
+pub use apart::raw_rgbd;
 pub use diff::{ImageDiff, Tolerance};
 pub use error::EncodeError;
 pub use option::{FILE_OPTIONS, FileOption, Shape};
 pub use quantise::{Quantised, RangeFault, Unstored, quantise_table, quantise_table_until};
 pub use read::{Image, ReadError};
 pub use storage::Storage;
-pub use told::raw_rgbd;
 
 use crate::cancel::Cancel;
 use crate::grid::{Channel, Grid};

@@ -1,8 +1,8 @@
 //! A file on disk: its bytes against the manifest beside it, then the tables in it.
 
 use super::{Asked, Kind, Recheck, recheck};
+use crate::encode::beside;
 use crate::encode::read::{self, Claim, Image, ReadError};
-use crate::encode::told;
 use crate::grid::Provenance;
 use crate::grid::provenance::LawResult;
 use crate::pipeline::manifest::TableRecord;
@@ -125,14 +125,14 @@ fn tables(bytes: &[u8], listed: Option<&Listed>, asked: Asked<'_>) -> Result<Vec
     }
     let sole = listed.and_then(|l| (l.tables.len() == 1).then(|| &l.tables[0]));
     let mut image = match (listed.map_or("", |l| l.container.as_str()), sole) {
-        ("raw", Some(p)) => told::bare(bytes, p)?,
+        ("raw", Some(p)) => beside::bare(bytes, p, asked.cancel)?,
         _ => read::read_bytes_until(asked.cancel, bytes)?,
     };
     if let Some(why) = map(&image) {
         return Ok(vec![Recheck::unchecked("", why)]);
     }
     if let Some(p) = sole {
-        image = image.told_by(p);
+        image = image.described(p.clone());
     }
     Ok(recheck(image, asked))
 }
