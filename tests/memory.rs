@@ -47,7 +47,8 @@ const SMALL: usize = 8 * MB;
 fn seeds() -> Vec<(String, Vec<u8>)> {
     let mut seeds = Vec::new();
     let table = sample::table(&["v"], |_, x| x);
-    for encoder in ENCODERS.iter().filter(|e| !e.magic().is_empty()) {
+    // the binary of the MERL database has one size, and its reader takes no other
+    for encoder in ENCODERS.iter().filter(|e| !e.magic().is_empty() && e.id() != "merl") {
         for storage in encoder.storages() {
             let p = sample::provenance(&table, *storage);
             let bytes = sample::file(*encoder, &table, *storage, &p);

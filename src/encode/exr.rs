@@ -15,7 +15,9 @@
 
 use super::mips::Mips;
 use super::stoppable::Stoppable;
-use super::{EncodeError, EncodeInput, Encoder, FileOption, Image as Picture, ReadError, Shape, Storage};
+use super::{
+    EncodeError, EncodeInput, Encoder, FileOption, Image as Picture, ReadError, Shape, Storage, texels,
+};
 use crate::cancel::Cancel;
 use crate::grid::Channel;
 use crate::grid::provenance::ATTRIBUTE;
@@ -62,6 +64,12 @@ impl Encoder for Exr {
     /// With option `positional` two channels get a third, which is 0.
     fn components(&self, shape: &Shape<'_>) -> usize {
         if shape.has(FileOption::Positional) && shape.channels == 2 { 3 } else { shape.channels }
+    }
+
+    /// A channel that is written three times is there three times.
+    fn most_bytes(&self, shape: &Shape<'_>) -> usize {
+        let written = self.components(shape).max(self.names(shape).len());
+        texels::bytes(shape.storage, written, shape.extent()).unwrap_or(usize::MAX)
     }
 
     fn names(&self, shape: &Shape<'_>) -> &'static [&'static str] {
