@@ -224,7 +224,9 @@ def check(path):
     lengths = [axis["len"] for axis in told["axes"]] + [1, 1, 1]
     same("width", width, lengths[0])
     same("height", height, int(np.prod(lengths[1:])))
-    same("channels", sorted(channels), sorted(c["id"] for c in told["channels"]))
+    # names by position, where loaders of colours are to read the file
+    names = (told.get("encoding") or {}).get("names") or [c["id"] for c in told["channels"]]
+    same("channels", sorted(channels), sorted(names))
     for name, (values, dtype) in channels.items():
         same(f"storage of {name}", STORAGE.get(dtype), told["encoding"]["storage"])
         if not np.isfinite(values).all():
