@@ -227,17 +227,7 @@ fn texels(p: &Provenance, image: &Image) -> Result<Table, String> {
 
 /// What was baked, bound anew from what its files say.
 fn bind(p: &Provenance) -> Result<Bound, String> {
-    let mut params = p.table.params.clone();
-    params.extend(p.model.iter().flat_map(|m| m.params.clone()));
-    let request = Request {
-        kind: p.table.id.clone(),
-        layout: None,
-        channels: Some(p.channels.iter().map(|c| c.id.clone()).collect()),
-        model: p.model.as_ref().map(|m| m.id.clone()),
-        params,
-        axes: Some(p.axes.iter().map(|r| r.axis.clone()).collect()),
-    };
-    request.bind().map_err(|e| e.to_string())
+    Request::recorded(p).bind().map_err(|e| e.to_string())
 }
 
 /// Integrates as many texels anew as the evaluations allow, spread evenly.

@@ -9,8 +9,7 @@ use super::request::{Draft, TableRequest};
 use super::sizing::PROVISIONAL;
 use super::{LONGEST_REASON, TOLERANCE, bind, canonical, name, probe, sizing};
 use crate::grid::provenance::{SizeRecord, Waiver};
-use crate::tables::spec::Request;
-use crate::tables::{Bound, Spec, TableInfo};
+use crate::tables::{Bound, TableInfo};
 use crate::verify;
 use serde_json::{Map, Value as Json};
 
@@ -142,7 +141,7 @@ fn fill(asked: TableRequest, bound: Bound, tolerance: Option<f64>, waivers: Vec<
     let tolerance = asked.tolerance.or(tolerance).unwrap_or(finest.max(least));
     let reconstruction = asked.reconstruction.unwrap_or(spec.kind.blended);
     let asked = TableRequest {
-        request: request(spec),
+        request: spec.request(),
         tolerance: Some(tolerance),
         outputs: Some(outputs.clone()),
         reconstruction: Some(reconstruction),
@@ -159,26 +158,6 @@ fn fill(asked: TableRequest, bound: Bound, tolerance: Option<f64>, waivers: Vec<
         inputs: Vec::new(),
         identity: String::new(),
     }
-}
-
-/// The request that binds to a spec.
-fn request(spec: &Spec) -> Request {
-    let ids = || spec.layout.ids().map(str::to_owned).collect();
-    Request {
-        kind: spec.kind.id.to_owned(),
-        layout: (!spec.layout.is_custom()).then(|| spec.layout.id.to_owned()),
-        channels: spec.layout.is_custom().then(ids),
-        model: spec.model.as_ref().map(|(info, _)| info.id.to_owned()),
-        params: params(spec),
-        axes: Some(spec.grid.axes().to_vec()),
-    }
-}
-
-/// Parameters of the model, then of the kind, without those that an axis sweeps.
-fn params(spec: &Spec) -> Map<String, Json> {
-    let swept = spec.swept();
-    let model = spec.model.iter().map(|(_, params)| params);
-    model.chain([&spec.params]).flat_map(|params| params.to_json(&swept)).collect()
 }
 
 /// A tolerance must be one that can be asked for.

@@ -58,7 +58,7 @@ pub fn readings(bound: &Bound, cancel: &Cancel) -> Result<Vec<Reading>, Cancelle
     for (form, axes) in forms {
         for length in LENGTHS {
             let axes = axes.iter().map(|a| Axis { len: length, ..a.clone() }).collect();
-            let Ok(bound) = (Request { axes: Some(axes), ..request(bound) }).bind() else { continue };
+            let Ok(bound) = (Request { axes: Some(axes), ..bound.spec.request() }).bind() else { continue };
             table(&bound, form, length, cancel, &mut all)?;
         }
     }
@@ -78,21 +78,6 @@ pub fn readings(bound: &Bound, cancel: &Cancel) -> Result<Vec<Reading>, Cancelle
     }
     cancel.check()?;
     Ok(all)
-}
-
-fn request(bound: &Bound) -> Request {
-    let spec = &bound.spec;
-    let swept = spec.swept();
-    let mut params = spec.params.to_json(&swept);
-    params.extend(spec.model.iter().flat_map(|(_, p)| p.to_json(&swept)));
-    Request {
-        kind: spec.kind.id.to_owned(),
-        layout: None,
-        channels: Some(spec.layout.ids().map(str::to_owned).collect()),
-        model: spec.model.as_ref().map(|(info, _)| info.id.to_owned()),
-        params,
-        axes: None,
-    }
 }
 
 fn table(

@@ -35,6 +35,7 @@ pub mod phase_sampling;
 pub mod preintegrated_skin;
 pub mod profile;
 mod refine;
+mod restated;
 pub mod role;
 pub mod selection;
 pub mod sheen_ltc;

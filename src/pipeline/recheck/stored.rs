@@ -3,7 +3,7 @@
 use crate::cancel::Cancel;
 use crate::encode::read::{Image, Plane, Sample};
 use crate::grid::provenance::AxisRecord;
-use crate::grid::{Axis, Provenance, Table};
+use crate::grid::{Provenance, Table};
 use crate::tables::place;
 use crate::tables::spec::{Bound, Request, Spec};
 use crate::verify::Watch;
@@ -33,24 +33,12 @@ pub(super) struct Numbers {
     pub(super) slack: Vec<f64>,
 }
 
-/// What the file says it was asked for.
-pub(super) fn request(p: &Provenance) -> Request {
-    let mut params = p.table.params.clone();
-    params.extend(p.model.iter().flat_map(|m| m.params.clone()));
-    Request {
-        kind: p.table.id.clone(),
-        layout: None,
-        channels: Some(p.channels.iter().map(|c| c.id.clone()).collect()),
-        model: p.model.as_ref().map(|m| m.id.clone()),
-        params,
-        axes: Some(p.axes.iter().map(|a| a.axis.clone()).collect::<Vec<Axis>>()),
-    }
-}
-
 impl Stored {
     /// Binds what the file says, and takes its numbers.
     pub(super) fn new(image: &Image, p: &Provenance) -> Result<Stored, String> {
-        let bound = request(p).bind().map_err(|e| format!("what it says of itself cannot be baked: {e}"))?;
+        let bound = Request::recorded(p)
+            .bind()
+            .map_err(|e| format!("what it says of itself cannot be baked: {e}"))?;
         let missing = |id: &str| format!("channel `{id}` is not in the picture");
         let planes: Vec<&Plane> = p
             .channels

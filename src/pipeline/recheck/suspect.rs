@@ -109,7 +109,7 @@ impl Search<'_> {
             for (other, words) in other_axes(axis) {
                 let changed =
                     axes.iter().enumerate().map(|(j, a)| if i == j { other.clone() } else { a.clone() });
-                let request = Request { axes: Some(changed.collect()), ..self.request() };
+                let request = Request { axes: Some(changed.collect()), ..self.stored.bound.spec.request() };
                 if self.is(&request) {
                     return Some((
                         Kind::Mislabelled,
@@ -120,7 +120,7 @@ impl Search<'_> {
         }
         for (key, words) in self.choices() {
             for word in words {
-                let mut request = self.request();
+                let mut request = self.stored.bound.spec.request();
                 request.params.insert(key.to_owned(), word.into());
                 if self.is(&request) {
                     return Some((Kind::Mislabelled, format!("the numbers are those of {key} = {word}")));
@@ -131,12 +131,18 @@ impl Search<'_> {
         for info in MODELS.iter().filter(|m| m.id != named) {
             let own = |key: &String| spec.kind.params.iter().any(|p| p.id == key.as_str());
             let params = self
+                .stored
+                .bound
+                .spec
                 .request()
                 .params
                 .into_iter()
                 .filter(|(k, _)| own(k) || info.params.iter().any(|p| p.is_called(k)));
-            let request =
-                Request { model: Some(info.id.to_owned()), params: params.collect(), ..self.request() };
+            let request = Request {
+                model: Some(info.id.to_owned()),
+                params: params.collect(),
+                ..self.stored.bound.spec.request()
+            };
             if self.is(&request) {
                 return Some((
                     Kind::Mislabelled,
@@ -145,22 +151,6 @@ impl Search<'_> {
             }
         }
         None
-    }
-
-    /// What the file says, of the spec that it was bound to.
-    fn request(&self) -> Request {
-        let spec = &self.stored.bound.spec;
-        let swept = spec.swept();
-        let mut params = spec.params.to_json(&swept);
-        params.extend(spec.model.iter().flat_map(|(_, p)| p.to_json(&swept)));
-        Request {
-            kind: spec.kind.id.to_owned(),
-            layout: None,
-            channels: Some(spec.layout.ids().map(str::to_owned).collect()),
-            model: spec.model.as_ref().map(|(info, _)| info.id.to_owned()),
-            params,
-            axes: Some(spec.grid.axes().to_vec()),
-        }
     }
 
     /// Parameters that are words, with those that are not chosen.
