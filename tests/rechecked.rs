@@ -221,6 +221,25 @@ fn files_that_end_early_are_truncated() {
     }
 }
 
+/// The bytes of maps are compared with the manifest that lists them.
+#[test]
+fn bytes_of_maps_are_compared() {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("out-examples/08-maps");
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["manifest.json", "map.roughness.ktx2"] {
+        std::fs::copy(example.join(name), folder.path().join(name)).unwrap();
+    }
+    let path = folder.path().join("map.roughness.ktx2");
+    let cancel = Cancel::new();
+    let asked = Asked { seed: 1, samples: SAMPLES, cancel: &cancel };
+    let verdict = || recheck::check(&path, &Beside::load(folder.path()), asked).unwrap().verdict;
+    assert_eq!(verdict(), Verdict::BytesWhole);
+    let mut bytes = std::fs::read(&path).unwrap();
+    *bytes.last_mut().unwrap() ^= 1;
+    std::fs::write(&path, bytes).unwrap();
+    assert_eq!(verdict(), Verdict::Faulty);
+}
+
 /// Containers without metadata are checked through the manifest beside them, and not without it.
 #[test]
 fn the_manifest_tells_of_files_that_do_not() {

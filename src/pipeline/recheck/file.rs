@@ -61,15 +61,17 @@ impl Beside {
     fn find(&self, name: &str) -> Option<Listed> {
         let manifest = self.0.as_ref()?;
         let mut found: Option<Listed> = None;
-        for table in manifest["tables"].as_array()? {
-            let Some(i) = table["files"].as_array()?.iter().position(|f| f["file"] == name) else { continue };
+        let units = |key: &str| manifest[key].as_array().into_iter().flatten();
+        for (table, is_map) in units("tables").map(|t| (t, false)).chain(units("maps").map(|m| (m, true))) {
+            let mut files = table["files"].as_array().into_iter().flatten();
+            let Some(i) = files.position(|f| f["file"] == name) else { continue };
             let file = &table["files"][i];
             let listed = found.get_or_insert_with(|| Listed {
                 bytes: file["bytes"].as_u64().unwrap_or_default(),
                 blake3: file["blake3"].as_str().unwrap_or_default().to_owned(),
                 container: file["container"].as_str().unwrap_or_default().to_owned(),
                 tables: Vec::new(),
-                is_map: manifest.get("map").is_some(),
+                is_map,
             });
             if let Ok(record) = serde_json::from_value::<TableRecord>(table.clone()) {
                 let file = record.files[i].clone();
