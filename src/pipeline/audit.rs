@@ -208,9 +208,21 @@ impl Audit {
 /// # Errors
 /// [`AuditError`] if there is no manifest, or it or a file cannot be read.
 pub fn audit(folder: &Path) -> Result<Audit, AuditError> {
+    look(folder, foreign)
+}
+
+/// [`audit`] of the files of the manifest alone: others, of which there may be thousands, are not opened.
+pub(super) fn of_listed(folder: &Path) -> Result<Audit, AuditError> {
+    look(folder, |_, _| Ok(Vec::new()))
+}
+
+/// Finds the files of a folder that are not among those known.
+type Others = fn(&Path, &[&str]) -> Result<Vec<Foreign>, AuditError>;
+
+fn look(folder: &Path, others: Others) -> Result<Audit, AuditError> {
     for _ in 0..TRIES {
         let text = manifest(folder)?;
-        let audit = compare(folder, &text)?;
+        let audit = compare(folder, &text, others)?;
         // the files of a bake that ended meanwhile are not those of the manifest that was read
         if manifest(folder)? == text {
             return Ok(audit);
@@ -230,7 +242,7 @@ fn manifest(folder: &Path) -> Result<Vec<u8>, AuditError> {
     }
 }
 
-fn compare(folder: &Path, text: &[u8]) -> Result<Audit, AuditError> {
+fn compare(folder: &Path, text: &[u8], others: Others) -> Result<Audit, AuditError> {
     let fault = |message: String| AuditError::Manifest { path: folder.join(MANIFEST), message };
     let listed: Listed = serde_json::from_slice(text).map_err(|e| fault(e.to_string()))?;
     // a file that several tables share is listed by each of them
@@ -255,7 +267,7 @@ fn compare(folder: &Path, text: &[u8]) -> Result<Audit, AuditError> {
         let (file, hashes) = &seen[name];
         files.push(Checked { file: name.to_owned(), state: state(folder, file, hashes)? });
     }
-    let foreign = foreign(folder, &seen.keys().copied().collect::<Vec<_>>())?;
+    let foreign = others(folder, &seen.keys().copied().collect::<Vec<_>>())?;
     let Listed { recipe, hash, tool, .. } = listed;
     Ok(Audit { recipe, hash, tool, files, foreign, activity: activity(folder) })
 }

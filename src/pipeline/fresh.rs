@@ -2,46 +2,17 @@
 //! hash of every file.
 
 use super::MANIFEST;
+use super::audit::{State, of_listed};
 use super::manifest;
 use crate::plan::Plan;
-use serde::Deserialize;
-use std::collections::BTreeSet;
 use std::path::Path;
-
-/// What of a manifest is looked at.
-#[derive(Deserialize)]
-struct Held {
-    tool: String,
-    hash: String,
-    #[serde(default)]
-    tables: Vec<Unit>,
-    #[serde(default)]
-    maps: Vec<Unit>,
-}
-
-#[derive(Deserialize)]
-struct Unit {
-    files: Vec<File>,
-}
-
-#[derive(Deserialize)]
-struct File {
-    file: String,
-    bytes: u64,
-    blake3: String,
-}
 
 /// Why the folder does not hold what the plan would bake, a line a reason; empty if it does.
 #[must_use]
 pub fn stale(plan: &Plan, folder: &Path) -> Vec<String> {
-    let path = folder.join(MANIFEST);
-    let bytes = match std::fs::read(&path) {
-        Ok(bytes) => bytes,
-        Err(e) => return vec![format!("{}: {e}", path.display())],
-    };
-    let held: Held = match serde_json::from_slice(&bytes) {
+    let held = match of_listed(folder) {
         Ok(held) => held,
-        Err(e) => return vec![format!("{}: {e}", path.display())],
+        Err(e) => return vec![e.to_string()],
     };
     let mut why = Vec::new();
     let tool = manifest::tool();
@@ -53,32 +24,15 @@ pub fn stale(plan: &Plan, folder: &Path) -> Vec<String> {
             "{MANIFEST} is of another plan: a recipe, a preset, an input or an option has changed"
         ));
     }
-    let mut listed = BTreeSet::new();
-    for file in held.tables.iter().chain(&held.maps).flat_map(|u| &u.files) {
-        // several tables may be in one file
-        if listed.insert(&file.file) {
-            why.extend(changed(folder, file));
+    for file in &held.files {
+        let name = &file.file;
+        match file.state {
+            State::Whole => {}
+            State::Missing => why.push(format!("{name} is missing")),
+            State::Changed { .. } => why.push(format!("{name} has other bytes than {MANIFEST} says")),
         }
     }
-    let names = plan.files();
-    why.extend(
-        names
-            .iter()
-            .filter(|n| **n != MANIFEST && !listed.contains(n))
-            .map(|n| format!("{n} is not there yet")),
-    );
+    let listed = |name: &String| name == MANIFEST || held.files.iter().any(|f| f.file == *name);
+    why.extend(plan.files().iter().filter(|n| !listed(n)).map(|n| format!("{n} is not there yet")));
     why
-}
-
-fn changed(folder: &Path, file: &File) -> Option<String> {
-    let name = &file.file;
-    match std::fs::read(folder.join(name)) {
-        Err(e) => Some(format!("{name}: {e}")),
-        Ok(bytes)
-            if bytes.len() as u64 != file.bytes || blake3::hash(&bytes).to_hex().as_str() != file.blake3 =>
-        {
-            Some(format!("{name} has other bytes than {MANIFEST} says"))
-        }
-        Ok(_) => None,
-    }
 }
