@@ -136,8 +136,7 @@ fn conductor_average(n: f64, k: f64) -> f64 {
     let f = |c: f64| fresnel::conductor(c, n, k).unpolarised() * c;
     let panel = |from: f64, to: f64, scale: f64| {
         let rule = Graded::new((scale / (to - from).abs()).min(1e3), Order(1.0, 0.4), 24.0);
-        let sum: f64 =
-            rule.node[..rule.len].iter().zip(&rule.weight).map(|(x, w)| w * f(from + (to - from) * x)).sum();
+        let sum: f64 = rule.node.iter().zip(&rule.weight).map(|(x, w)| w * f(from + (to - from) * x)).sum();
         2.0 * (to - from).abs() * sum
     };
     let pole = 1.0 / (1.0 + size);

@@ -244,7 +244,7 @@ impl Ellipse {
         let (s, mu) = (nodes.sin_o, nodes.mu_o);
         let length = panel.length.abs();
         let azimuth = Graded::new(panel.scale / length, AZIMUTH, self.level);
-        for j in 0..azimuth.len {
+        for j in 0..azimuth.node.len() {
             let step = panel.length * azimuth.node[j];
             let (sin, cos) = libm::sincos(self.psi_1 + panel.from + step);
             let (x, y) = (ax * cos, ay * sin);

@@ -39,7 +39,7 @@ pub fn visit(view: View, across: f64, cone: f64, level: f64, visit: &mut dyn FnM
                 continue;
             }
             let rule = Graded::new(scale / length.abs(), ORDER, level);
-            for k in 0..rule.len {
+            for k in 0..rule.node.len() {
                 let beta = from + length * rule.node[k];
                 circle(&mut nodes, beta, length.abs() * rule.weight[k], around);
                 visit(&nodes);

@@ -37,8 +37,6 @@ fn points(order: usize) -> impl Iterator<Item = (f64, f64)> {
 /// Nodes in (0, 1) graded towards 0 on the scale `eps`, and their weights.
 #[derive(Debug, Clone, Default)]
 pub struct Graded {
-    /// Number of nodes.
-    pub len: usize,
     /// Nodes, increasing.
     pub node: Vec<f64>,
     /// Weights; they sum to 1.
@@ -106,7 +104,6 @@ impl Graded {
             self.node.push(node);
             self.weight.push(weight);
         }
-        self.len = self.node.len();
     }
 
     /// A rule from `span[0]`, where the integrand has a square root of the distance, to `span[1]`, on either side of it.
@@ -129,7 +126,7 @@ impl Graded {
     pub fn root(order: Order, level: f64) -> Graded {
         let (node, weight): (Vec<f64>, Vec<f64>) =
             points(order.at(level, 0.0)).map(|(x, w)| (x * x, 2.0 * x * w)).unzip();
-        Graded { len: node.len(), node, weight }
+        Graded { node, weight }
     }
 }
 

@@ -134,7 +134,7 @@ pub fn visit(
         horizon.set(0.5 * scale / hardest.quarter, HORIZON, level);
         near.panel = if front { 0 } else { 2 };
         far.panel = near.panel + 1;
-        for j in 0..azimuth.len {
+        for j in 0..azimuth.node.len() {
             let sine = libm::sin(FRAC_PI_2 * azimuth.node[j]);
             let row = Row::relative(if front { sine } else { -sine }, s, mu);
             // 2 for the mirror half of the azimuth.

@@ -91,7 +91,7 @@ fn graded_arc(from: f64, scale: f64, level: f64) -> Arc {
         let (sin, cos) = libm::sincos(from + length * rule.node[i]);
         [sin, cos, length * rule.weight[i]]
     };
-    (0..rule.len).map(at).collect()
+    (0..rule.node.len()).map(at).collect()
 }
 
 /// A quarter of the azimuth, by Gauss-Legendre.

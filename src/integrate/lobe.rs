@@ -94,7 +94,7 @@ impl Lobe {
         let rule = Graded::new(1e3, self.order(end), self.level);
         let count = order(self.level + 1.0);
         let step = PI / count as f64;
-        for i in 0..rule.len {
+        for i in 0..rule.node.len() {
             let x = end * rule.node[i];
             let (cos, sin, jacobian) = polar(x);
             let weight = end * rule.weight[i] * jacobian * step;
@@ -118,7 +118,7 @@ impl Lobe {
         let scale = if near < 1e-8 { 1e3 } else { near.sqrt().min(1e3) };
         let rule = Graded::new(scale, self.order(length), self.level);
         let arc = gauss::rule(order(self.level + 2.0));
-        for i in 0..rule.len {
+        for i in 0..rule.node.len() {
             let w = rule.node[i];
             let (cos, sin, jacobian) = polar(begin + length * w * w);
             let psi_end = libm::acos((-self.cos * cos / (self.sin * sin)).clamp(-1.0, 1.0));

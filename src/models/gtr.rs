@@ -93,7 +93,7 @@ impl Gtr {
                 continue;
             }
             let rule = Graded::between(eps, Order(1.0, 0.35), 17.0, span);
-            for (x, w) in rule.node[..rule.len].iter().zip(&rule.weight) {
+            for (x, w) in rule.node.iter().zip(&rule.weight) {
                 let (sin, cos) = libm::sincos(FRAC_PI_2 * x);
                 // 1 - b s^2 cos^2 = mu^2 + alpha^2 s^2 + b s^2 sin^2
                 let base = mu * mu + self.alpha * self.alpha * sin2 + b * sin2 * sin * sin;

@@ -121,7 +121,7 @@ impl Range {
         for (panel, [from, to]) in self.panels.iter().enumerate() {
             let length = (to - from).abs();
             let rule = Graded::new(self.scale / length.max(1e-9), Order(1.0, 0.25), level);
-            for (x, w) in rule.node[..rule.len].iter().zip(&rule.weight) {
+            for (x, w) in rule.node.iter().zip(&rule.weight) {
                 nodes.push((panel, from + (to - from) * x, length * w));
             }
         }

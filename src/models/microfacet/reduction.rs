@@ -71,9 +71,9 @@ impl Integrand {
                 continue;
             }
             let rule = Graded::new((scale / length.abs()).min(1e3), ORDER, level);
-            out.count(rule.len);
+            out.count(rule.node.len());
             let mut part = 0.0;
-            for (&x, &w) in rule.node[..rule.len].iter().zip(&rule.weight) {
+            for (&x, &w) in rule.node.iter().zip(&rule.weight) {
                 // the distance to the peak is exact: it is the variable of the panel
                 let step = length * x;
                 let from_peak = if (from - mu).abs() <= 0.0 { step } else { from + step - mu };
