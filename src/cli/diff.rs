@@ -2,11 +2,10 @@
 
 use super::{Exit, Failure, output};
 use crate::cancel::Cancel;
+use crate::encode::ReadError;
 use crate::encode::diff::{Pairing, Tolerance};
 use crate::encode::diff_files::{self, DiffError, Manner};
 use crate::encode::layout::Layout;
-use crate::encode::raw::Raw;
-use crate::encode::{Encoder, ReadError};
 use crate::math::figures::exact;
 use crate::report;
 use std::path::PathBuf;
@@ -91,11 +90,9 @@ pub(super) fn layout<'a>(
     files: impl IntoIterator<Item = &'a PathBuf>,
 ) -> Result<Option<Layout>, Failure> {
     let Some(text) = text else { return Ok(None) };
-    let extension = Raw.extension();
-    let is_bare =
-        |p: &PathBuf| p.is_dir() || p.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
+    let is_bare = |p: &PathBuf| p.is_dir() || Layout::is_of(p);
     if !files.into_iter().any(is_bare) {
-        return Err(Failure::usage(format!("--raw tells how .{extension} files lie, and there is none")));
+        return Err(Failure::usage("--raw tells how .bin files lie, and there is none"));
     }
     Layout::parse(text).map(Some).map_err(|e| Failure::usage(format!("--raw: {e}")))
 }

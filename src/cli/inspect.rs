@@ -2,8 +2,8 @@
 
 use super::{Exit, Failure, output};
 use crate::cancel::Cancel;
-use crate::encode::raw::Raw;
-use crate::encode::{Encoder, atomic, beside, read};
+use crate::encode::layout::Layout;
+use crate::encode::{atomic, beside, read};
 use crate::report::{self, recognise};
 use std::path::PathBuf;
 
@@ -39,8 +39,7 @@ pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
     let layout = super::diff::layout(args.raw.as_deref(), &args.files)?;
     let mut images = Vec::new();
     for path in &args.files {
-        let is_bare = path.extension().is_some_and(|e| e.eq_ignore_ascii_case(Raw.extension()));
-        let of_file = layout.as_ref().filter(|_| is_bare);
+        let of_file = layout.as_ref().filter(|_| Layout::is_of(path));
         let bytes = read::load_until(cancel, path).map_err(|e| super::diff::read_failure(&e))?;
         let image = beside::read(path, &bytes, of_file, cancel).map_err(|e| {
             let name = path.display();

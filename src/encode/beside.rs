@@ -2,7 +2,7 @@
 
 use super::layout::Layout;
 use super::read::{self, Claim, Image, Plane, ReadError};
-use super::{Storage, encoder, exr_names, texels};
+use super::{Storage, exr_names, texels};
 use crate::cancel::Cancel;
 use crate::grid::Provenance;
 use crate::grid::provenance::Encoding;
@@ -142,14 +142,6 @@ impl Image {
             (self.channels, Vec::new())
         } else if named {
             exr_names::as_channels(self.channels, p)
-        } else if encoder(self.format).is_some_and(|e| e.id() == "npy")
-            && self.channels.len() == p.channels.len()
-        {
-            let named = |(plane, channel): (Plane, &crate::grid::Channel)| Plane {
-                name: channel.id.clone(),
-                ..plane
-            };
-            (self.channels.into_iter().zip(&p.channels).map(named).collect(), Vec::new())
         } else {
             (texels::finish(self.channels.into_iter().map(coded).collect(), Some(&claim)), Vec::new())
         };

@@ -247,8 +247,7 @@ fn compare(
     };
     if picture(0, &a) && picture(1, &b) {
         let image = |i: usize| {
-            let extension = [&a, &b][i];
-            let layout = manner.layout.as_ref().filter(|_| extension.as_str() == super::raw::Raw.extension());
+            let layout = manner.layout.as_ref().filter(|_| Layout::is_of(paths[i]));
             beside::read(paths[i], bytes[i], layout, cancel).map_err(|e| match e {
                 ReadError::Cancelled(stopped) => stopped.into(),
                 source => DiffError::Read { path: paths[i].to_owned(), source },

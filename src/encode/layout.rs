@@ -1,8 +1,10 @@
 //! How numbers lie in a file that does not say so: bare numbers, told by hand or by the manifest beside them.
 
+use super::raw::Raw;
 use super::read::{Image, MAX_SAMPLES, ReadError};
-use super::{Storage, texels};
+use super::{Encoder, Storage, texels};
 use crate::cancel::Cancel;
+use std::path::Path;
 
 /// Size, channels and storage of bare numbers: rows from the top, channels interleaved unless they are planar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,6 +53,12 @@ impl Layout {
             }
             _ => Err(wrong(format!("`{lengths}` is not three lengths above 0"))),
         }
+    }
+
+    /// Is it the name of a file of bare numbers?
+    #[must_use]
+    pub fn is_of(path: &Path) -> bool {
+        path.extension().is_some_and(|e| e.eq_ignore_ascii_case(Raw.extension()))
     }
 
     /// The picture in bare numbers.

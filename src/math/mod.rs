@@ -13,5 +13,4 @@ pub mod shown;
 pub mod simplex;
 pub mod special;
 pub mod square;
-pub mod srgb;
 pub mod sum;

@@ -132,4 +132,23 @@ impl Space {
             Space::Srgb => 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055,
         }
     }
+
+    /// A linear number, clamped to [0, 1], as a code of 8 bits.
+    #[must_use]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in [0, 255] by the clamp")]
+    pub fn byte(self, linear: f64) -> u8 {
+        (255.0 * self.encode(linear.clamp(0.0, 1.0))).round() as u8
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Space;
+
+    #[test]
+    fn codes_are_those_of_the_standard() {
+        // middle grey of 18 % is code 118 in every table of the standard; 188 is half the light
+        let codes = [0.0, 0.002, 0.18, 0.5, 1.0, 7.0, f64::NAN].map(|v| Space::Srgb.byte(v));
+        assert_eq!(codes, [0, 7, 118, 188, 255, 255, 0]);
+    }
 }

@@ -18,8 +18,8 @@ pub use tables::{PreviewError, materials, tables_of};
 
 use crate::cancel::{Cancel, Cancelled};
 use crate::grid::axis::count;
-use crate::math::srgb;
 use crate::models::ParamError;
+use crate::picture::Space;
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -148,7 +148,7 @@ impl Sums {
         self.error += error;
         for (i, other) in [integrated, exact].into_iter().enumerate() {
             for (a, b) in read.iter().zip(other) {
-                let codes = f64::from(srgb::code(*a)) - f64::from(srgb::code(*b));
+                let codes = f64::from(Space::Srgb.byte(*a)) - f64::from(Space::Srgb.byte(*b));
                 self.squares[i] += codes * codes;
                 self.largest[i] = self.largest[i].max((a - b).abs());
             }

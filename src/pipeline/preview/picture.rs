@@ -2,7 +2,7 @@
 
 use super::Preview;
 use crate::encode::EncodeError;
-use crate::math::srgb;
+use crate::picture::Space;
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage,
 };
@@ -26,7 +26,7 @@ pub fn png(preview: &Preview) -> Result<Vec<u8>, image::ImageError> {
     let mut push = |known: bool, rgb: [u8; 3]| bytes.extend(if known { rgb } else { [118; 3] });
     for plane in [&preview.integrated, &preview.read] {
         for pixel in plane {
-            push(!pixel[0].is_nan(), pixel.map(srgb::code));
+            push(!pixel[0].is_nan(), pixel.map(|v| Space::Srgb.byte(v)));
         }
     }
     for (a, b) in preview.integrated.iter().zip(&preview.read) {

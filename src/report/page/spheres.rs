@@ -6,6 +6,7 @@ use crate::grid::axis::count;
 use crate::grid::{Grid, Table};
 use crate::math::figures::significant;
 use crate::models;
+use crate::picture::Space;
 use crate::report::split::Split;
 use maud::{Markup, html};
 
@@ -96,7 +97,7 @@ fn draw(
                 let v = shade(&values);
                 sum += v;
                 pixels += 1;
-                codes[(y * roughness.len() + n) * size + x] = crate::math::srgb::code(v);
+                codes[(y * roughness.len() + n) * size + x] = Space::Srgb.byte(v);
             }
         }
         means.push(sum / count(pixels.max(1)));

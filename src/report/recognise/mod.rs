@@ -8,10 +8,11 @@
 mod text;
 
 use crate::cancel::{Cancel, Cancelled};
-use crate::encode::Image;
 use crate::encode::read::Plane;
+use crate::encode::{Image, raw_rgbd};
 use crate::grid::{Axis, Quantity, Texel};
 use crate::models::{Kind, MODELS, ModelInfo};
+use crate::picture::Space;
 use crate::tables::spec::{Bound, Request};
 use crate::verify::seeds::Seeds;
 use rayon::prelude::*;
@@ -200,10 +201,6 @@ struct Seen {
     values: Vec<Vec<f64>>,
 }
 
-fn srgb(v: f64) -> f64 {
-    if v <= 0.04045 { v / 12.92 } else { libm::pow((v + 0.055) / 1.055, 2.4) }
-}
-
 /// What the stored numbers may stand for: themselves; in 8 bits also codes of sRGB, and of four channels RGBD.
 fn seen(image: &Image, pixels: &[[usize; 2]]) -> Vec<Seen> {
     let value = |c: usize, [x, y]: [usize; 2]| image.channels[c].values[y * image.width + x];
@@ -212,12 +209,12 @@ fn seen(image: &Image, pixels: &[[usize; 2]]) -> Vec<Seen> {
     let eight = image.channels.iter().all(|c| c.sample.id() == "unorm8");
     let mut all = Vec::new();
     if eight {
-        let decode = |p: &Vec<f64>| p.iter().map(|v| srgb(*v)).collect();
+        #[allow(clippy::cast_possible_truncation, reason = "a code of 8 bits over 255")]
+        let decode = |p: &Vec<f64>| p.iter().map(|v| f64::from(Space::Srgb.decode(*v as f32))).collect();
         all.push(Seen { decoded: "sRGB", values: stored.iter().map(decode).collect() });
     }
     if eight && count == 4 {
-        let decode =
-            |p: &Vec<f64>| p[..3].iter().map(|v| libm::pow(*v, 2.2) / p[3].max(1.0 / 255.0)).collect();
+        let decode = |p: &Vec<f64>| raw_rgbd([p[0], p[1], p[2], p[3]]).to_vec();
         all.push(Seen { decoded: "RGBD", values: stored.iter().map(decode).collect() });
     }
     all.insert(0, Seen { decoded: "as stored", values: stored });
