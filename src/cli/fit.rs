@@ -71,7 +71,7 @@ pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
     if results > args.lang.most_results() {
         let (lang, most) = (format!("{:?}", args.lang).to_lowercase(), args.lang.most_results());
         let message = format!(
-            "a function of {lang} returns {most} numbers, this table has {results}; use --lang c or rust"
+            "a function of {lang} returns {most} numbers, this table has {results}; use --lang c, rust or python"
         );
         return Err(Failure::input(message));
     }

@@ -227,6 +227,7 @@ pub static ENCODERS: &[&dyn Encoder] = &[
     &code::Code(code::Wgsl),
     &code::Code(code::Hlsl),
     &code::Code(code::Js),
+    &code::Code(code::Python),
 ];
 
 /// Colours of a pixel of one to four components.

@@ -58,6 +58,10 @@ pub static PRESETS: &[Preset] = &[
     ),
     preset!("colour", "metals and thin films in colour, Schlick's factor, masking and visibility"),
     preset!("tabulated", "GGX as a MERL binary, and as directions that sample it"),
+    preset!(
+        "mitsuba",
+        "Mitsuba 3, whose masking is separable: albedos, split sum and glass over alpha, as EXR and NumPy modules"
+    ),
     preset!("everything", "every kind of table on its own axes: a check of the whole, and a catalogue"),
     preset!("kelemen-skin", "the Beckmann texture of the skin shader of GPU Gems 3, chapter 14"),
 ];

@@ -109,6 +109,26 @@ fn rust_computes_the_same() {
     }
 }
 
+/// In arrays of 32 bits, in which NumPy computes as the shader does.
+#[test]
+fn python_computes_the_same() {
+    let program = std::env::var_os("BRDFBAKE_PYTHON").unwrap_or("python3".into());
+    if !Command::new(&program).args(["-c", "import numpy"]).output().is_ok_and(|o| o.status.success()) {
+        eprintln!("SKIPPED: no {} with NumPy", program.display());
+        return;
+    }
+    let folder = folder("python");
+    for (i, fit) in fits().iter().enumerate() {
+        let at: Vec<String> = points().iter().map(|p| format!("{p:?}")).collect();
+        let print = "print(*(repr(float(x)) for x in v))";
+        let call = format!("{}(*np.array([{}], np.float32).T)", name(fit), at.join(", "));
+        let file = folder.join(format!("main{i}.py"));
+        std::fs::write(&file, format!("{}\nfor v in {call}:\n    {print}\n", fit.code(Lang::Python)))
+            .unwrap();
+        compare("python", fit, &run(Command::new(&program).arg(&file)).unwrap());
+    }
+}
+
 fn validate(what: &str, module: &naga::Module, fit: &Fit) {
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
     validator.validate(module).unwrap_or_else(|e| panic!("{what}: {e:?}"));

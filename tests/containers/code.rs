@@ -226,6 +226,51 @@ fn javascript_reads_as_the_reference() {
     }
 }
 
+/// A Python with NumPy: what `BRDFBAKE_PYTHON` names, or `python3`; none if there is none.
+pub(crate) fn python() -> Option<Command> {
+    let program = std::env::var_os("BRDFBAKE_PYTHON").unwrap_or("python3".into());
+    let found =
+        Command::new(&program).args(["-c", "import numpy"]).output().is_ok_and(|o| o.status.success());
+    if !found {
+        eprintln!("skipped: no {} with NumPy", program.display());
+    }
+    found.then(|| Command::new(program))
+}
+
+/// One number a time, and all in one call; with warnings as errors, so that nothing is computed out of range.
+#[test]
+fn python_reads_as_the_reference() {
+    let Some(mut python) = python() else { return };
+    let (folder, programs) = (folder("python"), programs("python"));
+    let mut main = String::from("import warnings\nwarnings.simplefilter('error')\nimport numpy as np\n");
+    for (i, (source, t, expected, _)) in programs.iter().enumerate() {
+        std::fs::write(folder.join(format!("table{i}.py")), source).unwrap();
+        main += &format!("from table{i} import dfg_lookup\n");
+        main += &calls(expected, |a| {
+            format!("print(*(repr(float(v)) for v in dfg_lookup({a}).astype(np.float64)))\n")
+        });
+        let at: Vec<&Vec<f64>> = expected.iter().map(|e| &e.0).collect();
+        let axes = t.grid.axes().len();
+        main += &format!(
+            "for v in dfg_lookup(*np.array({at:?}).T):\n    print(*(repr(float(x)) for x in v))\n\
+             assert dfg_lookup(*[np.zeros((3, 1)) + a.min() for a in np.array({at:?}).T]).shape == (3, 1, {n})\n\
+             with np.errstate(invalid='ignore'):\n    assert np.isnan(dfg_lookup(*[np.nan] * {axes})).all()\n",
+            n = t.channels.len(),
+        );
+    }
+    let file = folder.join("main.py");
+    std::fs::write(&file, main).unwrap();
+    let printed = run(python.arg(&file)).unwrap();
+    let mut lines = printed.lines();
+    for (i, (_, _, expected, tolerance)) in programs.iter().enumerate() {
+        for way in ["one by one", "arrays"] {
+            let lines: Vec<&str> = lines.by_ref().take(expected.len()).collect();
+            compare(&format!("python {i}, {way}"), &lines.join("\n"), expected, *tolerance);
+        }
+    }
+    assert!(lines.next().is_none());
+}
+
 fn validate(what: &str, module: &naga::Module, channels: usize) {
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
     validator.validate(module).unwrap_or_else(|e| panic!("{what}: {e:?}"));
@@ -274,7 +319,8 @@ fn the_first_line_is_the_provenance() {
         let (bytes, _) = written(&t, e.id(), Storage::Half, &[]).unwrap();
         assert!(bytes.is_ascii());
         let text = String::from_utf8(bytes).unwrap();
-        let json = text.lines().next().unwrap().strip_prefix("// brdfbake ").unwrap();
+        let mark = if e.id() == "python" { "#" } else { "//" };
+        let json = text.lines().next().unwrap().strip_prefix(&format!("{mark} brdfbake ")).unwrap();
         let told: brdfbake::grid::Provenance = serde_json::from_str(json).unwrap();
         assert_eq!((told.name.as_str(), told.channels[0].meaning.as_str()), ("dfg", "∫ f µ dω"));
     }

@@ -15,6 +15,7 @@ mod glsl;
 mod hlsl;
 mod js;
 mod program;
+mod python;
 pub mod reader;
 mod rust;
 mod wgsl;
@@ -24,6 +25,7 @@ pub use cpp::Cpp;
 pub use glsl::Glsl;
 pub use hlsl::Hlsl;
 pub use js::Js;
+pub use python::Python;
 pub use rust::Rust;
 pub use wgsl::Wgsl;
 
@@ -57,6 +59,10 @@ pub trait Syntax: Debug + Send + Sync + 'static {
     /// File name extension.
     fn extension(&self) -> &'static str {
         self.id()
+    }
+    /// What begins a comment that ends with its line.
+    fn comment(&self) -> &'static str {
+        "//"
     }
     /// True if it has 64-bit floats.
     fn has_double(&self) -> bool;
@@ -195,7 +201,7 @@ impl<S: Syntax> Encoder for Code<S> {
         let parts = program.parts(&self.0);
         input.cancel.check()?;
         let file = self.0.file(&parts);
-        let mut text = program.comment(input);
+        let mut text = program.comment(self.0.comment(), input);
         text.push('\n');
         text.push_str(&file);
         Ok(text.into_bytes())

@@ -47,7 +47,7 @@ impl Program<'_> {
     }
 
     /// The provenance, then what the arguments and results are: line comments, in ASCII.
-    pub(super) fn comment(&self, input: &EncodeInput<'_>) -> String {
+    pub(super) fn comment(&self, mark: &str, input: &EncodeInput<'_>) -> String {
         let mut text = format!("brdfbake {}\n{}_lookup:", input.label.provenance_json, self.name);
         for axis in input.grid.axes() {
             let [lo, hi] = axis.domain;
@@ -57,7 +57,7 @@ impl Program<'_> {
         for c in input.channels {
             let _ = write!(text, "\n  {}: {}", c.id, c.meaning.replace(['\n', '\r'], " "));
         }
-        let lines: Vec<String> = text.lines().map(|l| format!("// {}", ascii(l))).collect();
+        let lines: Vec<String> = text.lines().map(|l| format!("{mark} {}", ascii(l))).collect();
         lines.join("\n")
     }
 

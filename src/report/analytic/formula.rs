@@ -1,6 +1,6 @@
 //! A formula as named steps: evaluated in f32 as the code computes it, counted, and written in a language.
 
-use crate::encode::code::{C, Glsl, Hlsl, Rust, Syntax, Wgsl};
+use crate::encode::code::{C, Glsl, Hlsl, Python, Rust, Syntax, Wgsl};
 use crate::grid::expression::Expression;
 use crate::grid::scalar::Scalar;
 use crate::math::rational::{Fitted, Term, Terms};
@@ -16,16 +16,18 @@ pub enum Lang {
     Hlsl,
     Rust,
     C,
+    Python,
 }
 
 impl Lang {
-    fn syntax(self) -> &'static dyn Syntax {
+    pub(super) fn syntax(self) -> &'static dyn Syntax {
         match self {
             Lang::Glsl => &Glsl,
             Lang::Wgsl => &Wgsl,
             Lang::Hlsl => &Hlsl,
             Lang::Rust => &Rust,
             Lang::C => &C,
+            Lang::Python => &Python,
         }
     }
 
@@ -131,6 +133,13 @@ impl Formula {
                 let (arguments, count) = (arguments("float ", ""), results.len());
                 format!(
                     "#include <math.h>\n\nstatic inline void {name}({arguments}, float out[{count}]) {{\n{body}{out}}}\n"
+                )
+            }
+            Lang::Python => {
+                let (arguments, list) = (arguments("", ""), results.join(", "));
+                format!(
+                    "import numpy as np\n\n\ndef {name}({arguments}):\n{body}    \
+                     return np.stack(np.broadcast_arrays({list}), axis=-1)\n"
                 )
             }
         }

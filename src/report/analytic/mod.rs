@@ -172,10 +172,10 @@ impl Fit {
     /// A function of the arguments, below what it is and how far off, as comments.
     #[must_use]
     pub fn code(&self, lang: Lang) -> String {
-        format!("{}{}", self.comment(), self.formula.code(lang))
+        format!("{}{}", self.comment(lang.syntax().comment()), self.formula.code(lang))
     }
 
-    fn comment(&self) -> String {
+    fn comment(&self, mark: &str) -> String {
         let results: Vec<String> = (self.results.iter().zip(&self.ranges))
             .map(|(id, [lo, hi])| format!("{id} in [{lo}, {hi}]"))
             .collect();
@@ -184,7 +184,7 @@ impl Fit {
                 self.formula.arguments.iter().zip(&o.at).map(|(a, v)| format!("{a} = {v:.4}")).collect();
             let result = self.results.get(o.result).map_or("", String::as_str);
             format!(
-                "// {what}: largest {:.2e} ({result} at {}), mean {:.2e}\n",
+                "{mark} {what}: largest {:.2e} ({result} at {}), mean {:.2e}\n",
                 o.largest,
                 at.join(", "),
                 o.mean
@@ -193,7 +193,7 @@ impl Fit {
         let practical =
             self.practical.as_ref().map_or_else(String::new, |o| line("mu >= 0.05, roughness >= 0.09", o));
         format!(
-            "// {}: {}.\n// {}; {} operations. Errors in f32, against integrals:\n{}{practical}",
+            "{mark} {}: {}.\n{mark} {}; {} operations. Errors in f32, against integrals:\n{}{practical}",
             self.title,
             results.join(", "),
             self.form,
