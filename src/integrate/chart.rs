@@ -61,6 +61,12 @@ pub enum Chart {
 const HORIZON_SCALE: f64 = 1e-9;
 
 impl Chart {
+    /// The cosine below which a lobe is flat; 0 where it has none.
+    #[must_use]
+    pub fn floor(&self) -> f64 {
+        if let Chart::Broad { floor, .. } = self { *floor } else { 0.0 }
+    }
+
     /// The half-vector chart that facets need: the simple one where it is enough.
     #[must_use]
     pub fn facets(facets: FacetLobe) -> Chart {

@@ -6,6 +6,7 @@
 use super::Brdf;
 use super::integral::directional_albedo;
 use crate::integrate::gauss;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex};
@@ -13,40 +14,48 @@ use std::sync::{Arc, Mutex};
 /// Nodes of a panel.
 const ORDER: usize = 16;
 
-/// Panels: [0, 2^-21], [2^-21, 2^-20], ..., [1/2, 1].
-const PANELS: usize = 22;
+/// Octaves: [2^-21, 2^-20], ..., [1/2, 1]; one more panel reaches down to 0.
+const OCTAVES: usize = 21;
 
 /// Lebesgue constant of the points, rounded up: how much errors at the nodes may grow between them.
 const LEBESGUE: f64 = 3.0;
 
-/// Absolute tolerance of each node.
+/// Absolute tolerance of each node where nothing else is asked for.
 pub const TOLERANCE: f64 = 1e-10;
 
 /// The directional albedo of a lobe, as 1 - E.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AlbedoCurve {
-    /// 1 - E at the Chebyshev points of each panel.
-    missing: Vec<[f64; ORDER]>,
+    /// From the horizon up.
+    panels: Vec<Panel>,
     /// `2 int (1 - E) mu dmu` of this very curve.
     average: f64,
-    /// Estimated errors of the panels: of the nodes, and of what the polynomials leave out.
-    errors: [f64; PANELS],
 }
 
-/// Ends of a panel.
-fn ends(panel: usize) -> (f64, f64) {
-    let at = |k: usize| (0..k).fold(1.0, |x: f64, _| 0.5 * x);
-    let hi = at(PANELS - 1 - panel);
-    (if panel == 0 { 0.0 } else { 0.5 * hi }, hi)
+/// A polynomial between two cosines.
+#[derive(Debug, Clone, PartialEq)]
+struct Panel {
+    lo: f64,
+    hi: f64,
+    /// 1 - E at the Chebyshev points.
+    missing: [f64; ORDER],
+    /// Estimated error: of the nodes, and of what the polynomial leaves out.
+    error: f64,
 }
 
-/// The panel that holds a cosine.
-fn panel_of(mu: f64) -> usize {
-    let mut panel = PANELS - 1;
-    while panel > 0 && mu < ends(panel).0 {
-        panel -= 1;
+/// Ends of the panels: 0, the cosine below which a model is flat (0 where it has none), and octaves up to 1.
+fn ends(floor: f64) -> Vec<f64> {
+    let mut ends: Vec<f64> =
+        std::iter::successors(Some(1.0), |hi: &f64| Some(0.5 * hi)).take(OCTAVES + 1).collect();
+    while floor > 0.0 && ends[ends.len() - 1] > 2.0 * floor {
+        ends.push(0.5 * ends[ends.len() - 1]);
     }
-    panel
+    if floor > 0.0 {
+        ends.push(floor);
+    }
+    ends.push(0.0);
+    ends.reverse();
+    ends
 }
 
 /// Chebyshev point of the first kind, in (-1, 1).
@@ -61,15 +70,15 @@ static RECENT: Mutex<BTreeMap<String, Arc<AlbedoCurve>>> = Mutex::new(BTreeMap::
 const KEPT: usize = 512;
 
 impl AlbedoCurve {
-    /// The curve of a lobe that `key` names in full (model and parameters), made once.
+    /// The curve of a lobe that `key` names in full (model, parameters and tolerance), made once.
     #[must_use]
-    pub fn shared(key: &str, model: &dyn Brdf) -> Arc<AlbedoCurve> {
+    pub fn shared(key: &str, model: &dyn Brdf, tolerance: f64) -> Arc<AlbedoCurve> {
         let lock = || RECENT.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         if let Some(curve) = lock().get(key) {
             return Arc::clone(curve);
         }
         // Made without the lock: two threads may make the same curve, with the same bits.
-        let curve = Arc::new(AlbedoCurve::new(model));
+        let curve = Arc::new(AlbedoCurve::new(model, tolerance));
         let mut recent = lock();
         if recent.len() >= KEPT {
             recent.clear();
@@ -78,43 +87,37 @@ impl AlbedoCurve {
         curve
     }
 
-    /// The curve of a lobe.
+    /// The curve of a lobe, with an absolute tolerance of each node.
     #[must_use]
-    pub fn new(model: &dyn Brdf) -> AlbedoCurve {
-        let mut errors = [0.0; PANELS];
-        let mut missing = Vec::with_capacity(PANELS);
-        for (panel, error) in errors.iter_mut().enumerate() {
-            let (lo, hi) = ends(panel);
-            let mut values = [0.0; ORDER];
-            for (i, v) in values.iter_mut().enumerate() {
-                let mu = 0.5 * ((lo + hi) + (hi - lo) * point(i));
-                let e = directional_albedo(model, mu, TOLERANCE);
-                *error = f64::max(*error, e.error[0]);
-                *v = 1.0 - e.value[0];
-            }
-            // the polynomial between the nodes magnifies their errors a little
-            *error *= LEBESGUE;
-            // in the panel that holds the singularity coefficients fall like a power, and what is left out adds up
-            let rest = if panel == 0 { 2.0 * ORDER as f64 } else { 1.0 };
-            *error += rest * tail(&values);
-            missing.push(values);
-        }
-        let mut curve = AlbedoCurve { missing, average: 0.0, errors };
+    pub fn new(model: &dyn Brdf, tolerance: f64) -> AlbedoCurve {
+        let ends = ends(model.chart().map_or(0.0, |chart| chart.floor()));
+        let nodes: Vec<(f64, f64)> = (0..(ends.len() - 1) * ORDER)
+            .into_par_iter()
+            .map(|i| {
+                let (lo, hi) = (ends[i / ORDER], ends[i / ORDER + 1]);
+                let mu = 0.5 * ((lo + hi) + (hi - lo) * point(i % ORDER));
+                let e = directional_albedo(model, mu, tolerance);
+                (1.0 - e.value[0], e.error[0])
+            })
+            .collect();
+        let panels = ends.windows(2).zip(nodes.chunks(ORDER)).map(|(ends, nodes)| Panel::new(ends, nodes));
+        let mut curve = AlbedoCurve { panels: panels.collect(), average: 0.0 };
         // degree ORDER - 1 times mu: Gauss-Legendre of this order is exact
         let rule = gauss::rule(ORDER);
-        curve.average = (0..PANELS)
-            .map(|panel| {
-                let (lo, hi) = ends(panel);
-                rule.integrate(lo, hi, |mu| 2.0 * mu * curve.on(panel, mu))
-            })
-            .sum();
+        let share = |p: &Panel| rule.integrate(p.lo, p.hi, |mu| 2.0 * mu * p.at(mu));
+        curve.average = curve.panels.iter().map(share).sum();
         curve
+    }
+
+    fn panel(&self, mu: f64) -> &Panel {
+        let above = self.panels.partition_point(|p| p.lo <= mu);
+        &self.panels[above.max(1) - 1]
     }
 
     /// 1 - E(mu).
     #[must_use]
     pub fn missing(&self, mu: f64) -> f64 {
-        self.on(panel_of(mu), mu.clamp(0.0, 1.0))
+        self.panel(mu).at(mu.clamp(0.0, 1.0))
     }
 
     /// E(mu).
@@ -132,31 +135,40 @@ impl AlbedoCurve {
     /// Largest estimated absolute error of [`AlbedoCurve::missing`].
     #[must_use]
     pub fn error(&self) -> f64 {
-        self.errors.iter().copied().fold(0.0, f64::max)
+        self.panels.iter().map(|p| p.error).fold(0.0, f64::max)
     }
 
     /// Estimated absolute error of [`AlbedoCurve::missing`] at a cosine.
     #[must_use]
     pub fn error_at(&self, mu: f64) -> f64 {
-        self.errors[panel_of(mu)]
+        self.panel(mu).error
     }
 
     /// Estimated absolute error of [`AlbedoCurve::missing_average`].
     #[must_use]
     pub fn average_error(&self) -> f64 {
-        let share = |panel: usize| {
-            let (lo, hi) = ends(panel);
-            (hi - lo) * (hi + lo) * self.errors[panel]
-        };
-        (0..PANELS).map(share).sum()
+        self.panels.iter().map(|p| (p.hi - p.lo) * (p.hi + p.lo) * p.error).sum()
+    }
+}
+
+impl Panel {
+    fn new(ends: &[f64], nodes: &[(f64, f64)]) -> Panel {
+        let mut missing = [0.0; ORDER];
+        for (m, (value, _)) in missing.iter_mut().zip(nodes) {
+            *m = *value;
+        }
+        // the polynomial between the nodes magnifies their errors a little
+        let error = LEBESGUE * nodes.iter().map(|(_, error)| *error).fold(0.0, f64::max);
+        // in the panel that holds the singularity coefficients fall like a power, and what is left out adds up
+        let rest = if ends[0] > 0.0 { 1.0 } else { 2.0 * ORDER as f64 };
+        Panel { lo: ends[0], hi: ends[1], missing, error: error + rest * tail(&missing) }
     }
 
-    /// The polynomial of a panel, by the barycentric formula.
-    fn on(&self, panel: usize, mu: f64) -> f64 {
-        let (lo, hi) = ends(panel);
-        let x = (2.0 * mu - (lo + hi)) / (hi - lo);
+    /// By the barycentric formula.
+    fn at(&self, mu: f64) -> f64 {
+        let x = (2.0 * mu - (self.lo + self.hi)) / (self.hi - self.lo);
         let (mut above, mut below) = (0.0, 0.0);
-        for (i, v) in self.missing[panel].iter().enumerate() {
+        for (i, v) in self.missing.iter().enumerate() {
             let node = point(i);
             let distance = x - node;
             if distance == 0.0 {
@@ -186,7 +198,7 @@ fn tail(values: &[f64; ORDER]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::AlbedoCurve;
+    use super::{AlbedoCurve, TOLERANCE};
     use crate::models::{Params, ggx, kelemen};
     use serde_json::json;
 
@@ -194,7 +206,7 @@ mod tests {
         let given = given.as_object().cloned().unwrap_or_default();
         let params =
             Params::resolve(info.id, info.params, given.iter().map(|(k, v)| (k.as_str(), v))).unwrap();
-        AlbedoCurve::new(&*(info.build)(&params).unwrap())
+        AlbedoCurve::new(&*(info.build)(&params).unwrap(), TOLERANCE)
     }
 
     #[test]

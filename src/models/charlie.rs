@@ -6,7 +6,7 @@
 use super::cloth::{Cloth, ClothLobe};
 use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
 use crate::cite;
-use crate::integrate::Chart;
+use crate::integrate::{BATCH, Chart, Nodes};
 use crate::math::frame;
 use crate::terms::charlie;
 use glam::DVec3;
@@ -81,5 +81,24 @@ impl Cloth for Charlie {
         let Some(h) = frame::half_vector(wo, wi) else { return 0.0 };
         charlie::d(self.roughness, h.wh)
             * charlie::visibility(self.roughness, wo.z.max(HORIZON), wi.z.max(HORIZON))
+    }
+
+    /// The chart goes round the normal, so that most neighbours share a cosine, and its masking.
+    fn values(&self, nodes: &Nodes, out: &mut [f64; BATCH]) {
+        let wo = nodes.wo_above();
+        let mu_o = wo.z.max(HORIZON);
+        let lambda_o = charlie::lambda(self.roughness, mu_o);
+        let (mut mu_i, mut lambda_i) = (mu_o, lambda_o);
+        for (i, o) in out[..nodes.len].iter_mut().enumerate() {
+            let wi = nodes.wi(i);
+            let half = if frame::both_above(wo, wi) { frame::half_vector(wo, wi) } else { None };
+            *o = half.map_or(0.0, |h| {
+                let above = wi.z.max(HORIZON);
+                if above.to_bits() != mu_i.to_bits() {
+                    (mu_i, lambda_i) = (above, charlie::lambda(self.roughness, above));
+                }
+                charlie::d(self.roughness, h.wh) * charlie::visibility_of([mu_o, mu_i], [lambda_o, lambda_i])
+            });
+        }
     }
 }

@@ -3,7 +3,7 @@
 //! The sources say that nothing better than uniform directions is needed; a cosine would starve the rim.
 
 use super::{Brdf, Functional, Sample};
-use crate::integrate::{Chart, Estimate};
+use crate::integrate::{BATCH, Chart, Estimate, Nodes};
 use crate::math::{frame, special};
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
@@ -17,6 +17,15 @@ pub trait Cloth: Debug + Send + Sync {
     /// The coordinates in which it is smooth: those of broad lobes, if nothing else is said.
     fn chart(&self) -> Chart {
         Chart::Broad { kinks: false, floor: 0.0 }
+    }
+
+    /// As [`Brdf::eval_nodes`].
+    fn values(&self, nodes: &Nodes, out: &mut [f64; BATCH]) {
+        let wo = nodes.wo_above();
+        for (i, o) in out[..nodes.len].iter_mut().enumerate() {
+            let wi = nodes.wi(i);
+            *o = if frame::both_above(wo, wi) { self.value(wo, wi) } else { 0.0 };
+        }
     }
 
     /// As [`Brdf::reduced`].
@@ -46,6 +55,10 @@ impl<C: Cloth> Brdf for ClothLobe<C> {
 
     fn chart(&self) -> Option<Chart> {
         Some(self.0.chart())
+    }
+
+    fn eval_nodes(&self, nodes: &Nodes, out: &mut [f64; BATCH]) {
+        self.0.values(nodes, out);
     }
 
     fn reduced(&self, mu_o: f64, functionals: &[Functional], tolerance: f64) -> Option<Estimate> {

@@ -3,7 +3,7 @@
 //! The white albedo of the lobe is a curve made when the model is built; 1 - E of the curve and its average are consistent, so
 //! a white surface reflects everything to the accuracy of the curve.
 
-use super::albedo_curve::AlbedoCurve;
+use super::albedo_curve::{AlbedoCurve, TOLERANCE};
 use super::integral::directional_albedo;
 use super::lobes::{Diffuse, Part, Reflector, Sum};
 use super::microfacet::MASKING;
@@ -77,7 +77,7 @@ pub(super) fn build(
         // a mirror loses nothing
         return Ok(single);
     }
-    let white = AlbedoCurve::shared(&key(params, true)?, &*lobe(model, params, Some(1.0))?);
+    let white = AlbedoCurve::shared(&key(params, true)?, &*lobe(model, params, Some(1.0))?, TOLERANCE);
     let rule = make(params, &Parts { single: &*single, white: &white, key: key(params, false)? })?;
     if let Rule::Turquin { f0 } = rule {
         return Ok(Box::new(Scaled { single, white, f0 }));
@@ -104,7 +104,7 @@ impl Parts<'_> {
 
     /// The curve of the lobe with its Fresnel factor.
     pub(super) fn coloured(&self) -> Arc<AlbedoCurve> {
-        AlbedoCurve::shared(&self.key, self.single)
+        AlbedoCurve::shared(&self.key, self.single, TOLERANCE)
     }
 }
 

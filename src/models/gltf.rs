@@ -93,6 +93,18 @@ pub static INFO: ModelInfo = ModelInfo {
             source: "closed form: E(mu) = 1 - mu ln((1 + mu) / mu)",
         },
         Known {
+            what: Quantity::Albedo(0.3),
+            params: &[
+                ("base_color", "0.8"),
+                ("roughness", "0.5"),
+                ("sheen", "0.5"),
+                ("sheen_roughness", "0.5"),
+            ],
+            value: 0.872_859_057_185_245,
+            relative: 1e-8,
+            source: "nested double exponential and Gauss-Legendre sums, E of the sheen summed anew at every node",
+        },
+        Known {
             what: Quantity::Value([0.0, 0.0, 0.0, 0.0]),
             params: &[("base_color", "0.5"), ("metallic", "0.25"), ("roughness", "1")],
             // w = 0: 0.75 (0.96 * 0.5 / pi + 0.04 / (4 pi)) + 0.25 * 0.5 / (4 pi)
@@ -116,6 +128,9 @@ pub static INFO: ModelInfo = ModelInfo {
     splits: false,
     build,
 };
+
+/// Absolute tolerance of the sheen's albedo.
+const SHEEN: f64 = 1e-9;
 
 /// Reflectance of base and coat at normal incidence: index 1.5.
 const DIELECTRIC: f64 = 0.04;
@@ -155,7 +170,8 @@ fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     let sheen = params.number("sheen")?;
     let sheen_roughness = square("sheen_roughness")?;
     let lobe = charlie::lobe(sheen_roughness);
-    let curve = (sheen > 0.0).then(|| AlbedoCurve::shared(&format!("charlie {sheen_roughness:e}"), &lobe));
+    let curve =
+        (sheen > 0.0).then(|| AlbedoCurve::shared(&format!("charlie {sheen_roughness:e}"), &lobe, SHEEN));
     let material = Arc::new(Material {
         base_color: params.number("base_color")?,
         metallic: params.number("metallic")?,
@@ -263,8 +279,8 @@ impl Brdf for Lobe {
     fn chart(&self) -> Option<Chart> {
         let alpha = [self.facets().alpha_x(); 2];
         Some(match self.kind {
-            Kind::Diffuse => Chart::Broad { kinks: false, floor: 0.0 },
-            Kind::Sheen => Chart::Broad { kinks: false, floor: charlie::HORIZON },
+            Kind::Diffuse if self.material.curve.is_none() => Chart::Broad { kinks: false, floor: 0.0 },
+            Kind::Diffuse | Kind::Sheen => Chart::Broad { kinks: false, floor: charlie::HORIZON },
             Kind::Specular if self.material.curve.is_some() => {
                 Chart::Ellipse(FacetLobe { fold: true, ..FacetLobe::smith(alpha, f64::INFINITY) })
             }
@@ -273,12 +289,12 @@ impl Brdf for Lobe {
     }
 
     /// What the sheen leaves is known to the error of its curve.
-    fn own_error(&self, mu_o: f64) -> f64 {
+    fn own_error(&self, _mu_o: f64) -> f64 {
         let below = matches!(self.kind, Kind::Specular | Kind::Diffuse);
         self.material
             .curve
             .as_ref()
             .filter(|_| below)
-            .map_or(0.0, |curve| self.material.sheen * curve.error().min(1.0).max(curve.error_at(mu_o)))
+            .map_or(0.0, |curve| self.material.sheen * curve.error())
     }
 }

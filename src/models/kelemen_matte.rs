@@ -3,7 +3,7 @@
 //! Recipe: `model = "kelemen-matte"`, `params = { alpha = 0.2, f0 = 0.04, rho = 0.5 }`: polished wood, plastic, skin. The matte lobe
 //! darkens where the specular one takes the light.
 
-use super::albedo_curve::AlbedoCurve;
+use super::albedo_curve::{AlbedoCurve, TOLERANCE};
 use super::lobes::{Diffuse, Part, Reflector, Sum};
 use super::microfacet::{F90, Fresnel};
 use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity, kelemen};
@@ -56,7 +56,7 @@ fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     let (alpha, f0, f90) = (params.number("alpha")?, params.number("f0")?, params.number("f90")?);
     let rho = params.number("rho")?;
     let specular = kelemen::lobe(alpha, Fresnel::Schlick { f0, f90 });
-    let curve = AlbedoCurve::shared(&format!("kelemen {alpha:e} {f0:e} {f90:e}"), &specular);
+    let curve = AlbedoCurve::shared(&format!("kelemen {alpha:e} {f0:e} {f90:e}"), &specular, TOLERANCE);
     let average = curve.missing_average();
     let specular = Part { weight: 1.0, chance: 1.0 - average, lobe: Box::new(specular) };
     let matte = Part { weight: rho, chance: rho * average, lobe: Box::new(Diffuse(Matte { curve })) };

@@ -56,9 +56,15 @@ fn fit(roughness: f64, x: f64) -> f64 {
 /// finite at the horizon.
 #[must_use]
 pub fn visibility(roughness: f64, mu_o: f64, mu_i: f64) -> f64 {
+    visibility_of([mu_o, mu_i], [lambda(roughness, mu_o), lambda(roughness, mu_i)])
+}
+
+/// [`visibility`] of two cosines whose [`lambda`] is known: many directions share one.
+#[must_use]
+pub fn visibility_of([mu_o, mu_i]: [f64; 2], [lambda_o, lambda_i]: [f64; 2]) -> f64 {
     let product = 4.0 * (mu_o * mu_i);
     if mu_o > 0.0 && mu_i > 0.0 && product > 0.0 {
-        1.0 / (product * (1.0 + (lambda(roughness, mu_o) + lambda(roughness, mu_i))))
+        1.0 / (product * (1.0 + (lambda_o + lambda_i)))
     } else {
         0.0
     }
