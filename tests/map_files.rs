@@ -15,6 +15,7 @@ use brdfbake::maps::{Centre, Effort, Objective, Shape};
 use brdfbake::picture::{Picture, read_bytes};
 use brdfbake::pipeline::map::{Input, MapOutcome, MapRequest, Output, RoughnessInput, run};
 use brdfbake::pipeline::{self, audit};
+use brdfbake::plan::map::Held;
 use std::path::{Path, PathBuf};
 
 /// An 8-bit PNG.
@@ -207,7 +208,13 @@ fn exponents_are_converted_with_their_distance() {
     let mut request = request(None, image(exponents));
     let RoughnessInput::Image { from, .. } = &mut request.roughness else { unreachable!() };
     let blinn_phong = conversion("blinn-phong").unwrap();
-    *from = Some(FromLobe { conversion: blinn_phong, range: [1.0, 100.0], log: true, by: By::Nearest });
+    *from = Some(FromLobe {
+        conversion: blinn_phong,
+        range: [1.0, 100.0],
+        log: true,
+        by: By::Nearest,
+        second: None,
+    });
     let done = bake(&request, dir.path());
     let level = &done.record.levels[0];
     assert!((f64::from(level.roughness[0]).powi(2) - 0.1227).abs() < LOBE_DIGITS, "{:?}", level.roughness);
@@ -282,8 +289,8 @@ fn every_container_holds_every_level() {
     let mut request = request(Some(normal), RoughnessInput::Constant(0.4));
     request.filter.centre = Centre::Free;
     request.outputs = ["ktx2", "dds", "exr", "png"].map(output).to_vec();
-    request.outputs[0].normal = Storage::Bc5;
-    request.outputs[0].roughness = Storage::Bc4;
+    request.outputs[0] =
+        request.outputs[0].stored(Held::Normal, Storage::Bc5).stored(Held::Roughness, Storage::Bc4);
     let out = dir.path().join("o");
     let done = bake(&request, &out);
     assert_eq!(done.written, 3 * 3 + 3 * 5 + 1);

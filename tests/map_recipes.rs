@@ -116,6 +116,37 @@ fn identities_follow_the_images() {
     assert_ne!(load(dir.path(), &text).unwrap().hash, first.hash);
 }
 
+/// A plan with maps is the text of a recipe, and the same plan again: every key of a map away from its default.
+#[test]
+fn maps_read_back_from_their_text() {
+    let dir = images();
+    let folder = dir.path().join("images");
+    picture(&folder, "s.png", [8, 4], 3, |x, _, c| if c == 0 && x > 3 { 30 } else { 200 });
+    let every = "[[map]]\nname = 'lobes'\nroughness = { file = 'images/mr.png', channel = 'R', space = 'srgb', holds = 'gloss' }\n\
+                 normal = { file = 'images/n.png', channels = ['G', 'R'], green = 'down', z = 'derived', scale = 0.5, mend = 'on', \
+                 signed = 'on', wrap = ['mirror', 'clamp'], resample = 'on' }\nnormals = 'fit'\neffort = 'exact'\n\
+                 objective = 'reflected'\ncompare = 'on'\ncheck = 7\noutputs = ['dds:shape=half+albedo=float', 'png']\n\
+                 sbrdf = { model = 'lafortune', lobes = 3, residual = 0.2, normalise = 'largest', \
+                 base = { file = 'images/mr.png', space = 'linear' }, metallic = { file = 'images/mr.png', channel = 'G' } }\n\
+                 [[map]]\nname = 'numbers'\nroughness = 0.3\nsbrdf = { model = 'lafortune', base = [1, 0.5, 0], metallic = 0 }\n\
+                 [[map]]\nname = 'ward'\nshape = 'anisotropic'\nrule = 'lean'\npacking = 'gltf'\n\
+                 roughness = { file = 'images/s.png', channel = 'R', from = { lobe = 'ward', range = [0.01, 1], log = 'on', \
+                 rule = 'formula', second = 'G', angle = 'B' } }\n";
+    let plan = load(dir.path(), &format!("name = 'both'\n{TABLE}{MAP}{every}")).unwrap();
+    let asked: Vec<_> = plan.maps.iter().map(|m| m.asked.clone()).collect();
+    let text = recipe::text_with_maps("both", &plan.requests(), &asked).unwrap();
+    let again = recipe::parse(&text, "again.toml").unwrap_or_else(|e| panic!("{e}\n{text}"));
+    assert_eq!(again.hash, plan.hash, "{text}");
+    assert_eq!(again.maps.len(), 4);
+    let twice: Vec<_> = again.maps.iter().map(|m| m.asked.clone()).collect();
+    assert_eq!(recipe::text_with_maps("both", &again.requests(), &twice).unwrap(), text);
+    // an image within another file has no path that a recipe could name
+    let mut inside = asked[0].clone();
+    let bytes = std::fs::read(folder.join("n.png")).unwrap().into();
+    inside.normal.as_mut().unwrap().image = map::Source::Memory { name: "images[0]".into(), bytes };
+    assert!(recipe::text_with_maps("m", &[], &[inside]).is_none());
+}
+
 /// Maps of other sizes: refused, or both brought to the larger size. Packed as glTF has it, whatever the images hold.
 #[test]
 fn sizes_and_packing() {

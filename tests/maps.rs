@@ -4,6 +4,7 @@ mod conversions;
 mod counted;
 mod footprints;
 mod map_files;
+mod map_lobes;
 mod map_pictures;
 mod map_recipes;
 mod map_scenes;

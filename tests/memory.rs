@@ -312,3 +312,54 @@ fn what_does_not_fit_is_refused_before_it_is_baked() {
     assert!(open > fixed + 2048 * 2048 * 36, "{open} {fixed}");
     assert!(memory::available().is_some_and(|n| n > 1 << 20), "what the machine has");
 }
+
+/// A map of noise of this side.
+fn map(side: u32, keys: &str, folder: &std::path::Path) -> Plan {
+    let noise = |x: u32, y: u32, c: u32| (x.wrapping_mul(2_654_435_761) ^ y.wrapping_mul(40_503) ^ c) >> 9;
+    let image = |name: &str, code: &dyn Fn(u32, u32, u32) -> u8| {
+        let file = std::fs::File::create(folder.join(name)).unwrap();
+        let mut encoder = png::Encoder::new(file, side, side);
+        encoder.set_color(png::ColorType::Rgb);
+        let texel = |i: u32| (0..3).map(move |c| code(i % side, i / side, c));
+        let data: Vec<u8> = (0..side * side).flat_map(texel).collect();
+        encoder.write_header().unwrap().write_image_data(&data).unwrap();
+    };
+    image("n.png", &|x, y, c| if c == 2 { 250 } else { 112 + (noise(x, y, c) & 31) as u8 });
+    image("r.png", &|x, y, c| 60 + (noise(x, y, c) & 127) as u8);
+    let [n, r] = ["n.png", "r.png"].map(|f| folder.join(f).display().to_string());
+    let keys = keys.replace("r.png", &r);
+    let text =
+        format!("name = 'm'\n[[map]]\nname = 't'\nnormal = '{n}'\nroughness = '{r}'\ncheck = 8\n{keys}\n");
+    parse(&text, "m.toml").unwrap()
+}
+
+#[test]
+fn maps_take_what_their_plan_says() {
+    let _alone = alone();
+    let folder = tempfile::tempdir().unwrap();
+    for (side, keys) in [
+        (256, "outputs = ['ktx2']"),
+        (128, "outputs = ['ktx2:normal=bc5', 'png', 'exr']\nnormals = 'fit'\nshape = 'anisotropic'"),
+        (160, "sbrdf = { model = 'lafortune', lobes = 2, base = 'r.png' }\noutputs = ['dds']"),
+    ] {
+        let [(told, taken), (least, small)] = [side, 16].map(|side| {
+            let plan = map(side, keys, folder.path());
+            (memory::plan(&plan), bake(&plan) as u64)
+        });
+        let (told, grown) = (told - least, taken.saturating_sub(small));
+        assert!(grown <= told, "{side}, {keys}: took {grown}, {told} were told");
+        assert!(told <= 5 * grown, "{side}, {keys}: took only {grown}, {told} were told");
+        let plan = map(side, keys, folder.path());
+        assert!(taken <= memory::plan(&plan), "{side}, {keys}: took {taken}");
+        let out = folder.path().join("out");
+        let limit = memory::plan(&plan) - 1;
+        let settings = Settings { memory: Some(limit), ..Settings::new(&out) };
+        match run(&plan, &settings, &Cancel::new(), &Silent).unwrap_err() {
+            PipelineError::MapMemory { map, needed, .. } => {
+                assert_eq!((map.as_str(), needed), ("t", limit + 1))
+            }
+            other => panic!("{other}"),
+        }
+        assert!(!out.exists());
+    }
+}

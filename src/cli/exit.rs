@@ -147,9 +147,10 @@ impl From<PipelineError> for Failure {
             PipelineError::Encode { error, .. } => Exit::of_encode(error),
             PipelineError::Fit { .. } | PipelineError::SizeGrid { .. } => Exit::Input,
             PipelineError::Jobs { .. } => Exit::Usage,
-            PipelineError::Files(_) | PipelineError::Memory { .. } | PipelineError::Threads { .. } => {
-                Exit::Io
-            }
+            PipelineError::Files(_)
+            | PipelineError::Memory { .. }
+            | PipelineError::MapMemory { .. }
+            | PipelineError::Threads { .. } => Exit::Io,
             _ => Exit::Internal,
         };
         if exit == Exit::Interrupted {
@@ -173,7 +174,7 @@ impl From<PipelineError> for Failure {
             PipelineError::Files(TransactionError::Busy { .. }) => {
                 message.push_str(" (--lock-timeout SECONDS waits longer)");
             }
-            PipelineError::Memory { needed, .. } => {
+            PipelineError::Memory { needed, .. } | PipelineError::MapMemory { needed, .. } => {
                 let enough = needed.div_ceil(1_000_000_000);
                 message.push_str(&format!(" (--memory {enough}GB)"));
             }

@@ -1,7 +1,7 @@
 //! `brdfbake map`: parameter maps with filtered levels, and how far each level is from the texels that it stands for.
 
 use super::limits::Limits;
-use super::{Exit, Failure, map_options, output};
+use super::{Exit, Failure, map_options, map_sbrdf, output};
 use crate::cancel::Cancel;
 use crate::encode::mips::containers;
 use crate::functions::conversion::{By, CONVERSIONS};
@@ -11,7 +11,7 @@ use crate::math::nearest::offer;
 use crate::picture::{Space, Wrap};
 use crate::pipeline::map::{MapError, MapOutcome, run as filter};
 use crate::plan::Fault;
-use crate::plan::map::{FromLobe, Input, MapRequest, Output, Packing, RoughnessInput};
+use crate::plan::map::{FromLobe, Input, MapRequest, Output, Packing, RoughnessInput, Second};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::path::PathBuf;
@@ -35,9 +35,15 @@ pub struct Args {
     /// The roughness is coded as sRGB, against every format of materials.
     #[arg(long)]
     srgb: bool,
-    /// The codes tell of another lobe: a parametrisation of one number of `describe to-ggx`, such as blinn-phong.
+    /// The codes tell of another lobe: a parametrisation of `describe to-ggx`, such as blinn-phong or ward.
     #[arg(long, value_name = "ID", requires = "range")]
     from: Option<String>,
+    /// Channel of the second number, of lobes that have two (with --anisotropic).
+    #[arg(long, value_name = "NAME", requires = "from")]
+    second_channel: Option<String>,
+    /// Channel of the angle of the first axis from the tangent: codes 0..1 are half a turn.
+    #[arg(long, value_name = "NAME", requires = "second_channel")]
+    angle_channel: Option<String>,
     /// Numbers that the codes 0 and 1 stand for.
     #[arg(long, value_name = "LO,HI", value_delimiter = ',', requires = "from")]
     range: Vec<f64>,
@@ -116,6 +122,8 @@ pub struct Args {
     /// Output folder.
     #[arg(short, long, value_name = "DIR", default_value = "brdfbake-maps")]
     out: PathBuf,
+    #[command(flatten)]
+    sbrdf: map_sbrdf::Lobes,
     #[command(flatten)]
     limits: Limits,
     /// Print nothing but errors.
@@ -196,7 +204,8 @@ fn request(args: &Args) -> Result<MapRequest, Failure> {
         if args.objective == Aim::Reflected { Objective::Reflected } else { Objective::Normals };
     let (factor, check, compare) = (args.factor, args.check, args.compare);
     let outputs = args.format.iter().map(|text| format(args, text)).collect::<Result<_, _>>()?;
-    Ok(MapRequest { packing, factor, outputs, check, compare, ..request })
+    let sbrdf = args.sbrdf.request()?;
+    Ok(MapRequest { packing, factor, outputs, check, compare, sbrdf, ..request })
 }
 
 /// The help of `--format`, with the containers that there are.
@@ -258,16 +267,18 @@ fn roughness(args: &Args) -> Result<RoughnessInput, Failure> {
 
 /// What the codes tell of.
 fn from(args: &Args, id: &str) -> Result<FromLobe, Failure> {
-    let usable = || CONVERSIONS.iter().filter(|c| c.numbers.len() == 1);
-    let conversion = usable().find(|c| c.id == id).ok_or_else(|| {
-        let ids: Vec<&str> = usable().map(|c| c.id).collect();
-        Failure::usage(format!("--from {id}: parametrisations of one number are {}", ids.join(", ")))
+    let conversion = CONVERSIONS.iter().find(|c| c.id == id).ok_or_else(|| {
+        let ids: Vec<&str> = CONVERSIONS.iter().map(|c| c.id).collect();
+        let offer = offer(id, ids.iter().copied());
+        Failure::usage(format!("--from {id}: no such parametrisation{offer}; there are {}", ids.join(", ")))
     })?;
+    let angle = args.angle_channel.clone();
+    let second = args.second_channel.clone().map(|channel| Second { channel, angle });
     let [lo, hi] = args.range[..] else {
         return Err(Failure::usage("--range: two numbers are needed, as LO,HI"));
     };
     let by = if args.formula { By::Formula } else { By::Nearest };
-    Ok(FromLobe { conversion, range: [lo, hi], log: args.log, by })
+    Ok(FromLobe { conversion, range: [lo, hi], log: args.log, by, second })
 }
 
 /// A container with its storages.
@@ -322,6 +333,8 @@ fn summary(outcome: &MapOutcome) -> String {
         out.push_str(&line);
         out.push('\n');
     }
+    map_sbrdf::lobes(record, &mut out);
+    map_sbrdf::conversion(record, &mut out);
     let measured: Vec<_> = record.levels.iter().filter_map(|l| l.measured.as_ref()).collect();
     // every level has the same rules
     for (i, rule) in measured.iter().take(1).flat_map(|m| &m.rules).map(|r| &r.rule).enumerate() {

@@ -21,6 +21,7 @@ pub mod limits;
 pub mod list;
 pub mod map;
 mod map_options;
+mod map_sbrdf;
 pub mod output;
 pub mod plan;
 pub mod plot;

@@ -2,6 +2,7 @@
 
 use super::{Exit, Failure, engine, output, scene};
 use crate::pipeline::cost::{self, Cost};
+use crate::pipeline::memory;
 use crate::plan::{PlannedMap, PlannedTable};
 use bytesize::ByteSize;
 use serde_json::{Value as Json, json};
@@ -91,13 +92,14 @@ fn table(table: &PlannedTable, cost: &Cost) -> Json {
 }
 
 fn map(map: &PlannedMap) -> Json {
-    json!({ "map": map.name(), "size": map.size, "levels": map.levels(), "files": map.files(), "asked": map.asked.canonical() })
+    json!({ "map": map.name(), "size": map.size, "levels": map.levels(), "memory": memory::map(map), "files": map.files(), "asked": map.asked.canonical() })
 }
 
 fn map_line(map: &PlannedMap) -> String {
     let kinds: Vec<&str> = map.asked.kinds().iter().map(|k| k.id()).collect();
     let [w, h] = map.size;
-    format!("{}: map of {}; {w} x {h}, {} levels", map.name(), kinds.join(", "), map.levels())
+    let (name, kinds, memory) = (map.name(), kinds.join(", "), size(memory::map(map)));
+    format!("{name}: map of {kinds}; {w} x {h}, {} levels, at most {memory} of memory", map.levels())
 }
 
 fn line(job: &scene::Job, table: &PlannedTable, cost: &Cost) -> String {

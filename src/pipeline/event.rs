@@ -212,6 +212,8 @@ pub struct MapPlanEntry<'a> {
     pub files: Vec<String>,
     /// Hash of what was asked and of its images.
     pub hash: &'a str,
+    /// Most bytes of memory that it takes.
+    pub memory: u64,
 }
 
 /// The largest of something, borrowed.
@@ -307,6 +309,7 @@ impl<'a> Event<'a> {
             size: m.size,
             files: m.files(),
             hash: &m.identity,
+            memory: super::memory::map(m),
         };
         Event::Plan { recipe: &plan.name, tables, maps: plan.maps.iter().map(map).collect() }
     }

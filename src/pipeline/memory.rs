@@ -5,11 +5,11 @@
 //! with its errors, what is fitted to it, its rounded values, its files, and what a container needs to write one
 //! ([`Encoder::most_memory`]). `tests/memory.rs` measures bakes against it.
 
-use super::PipelineError;
+use super::{PipelineError, memory_map};
 use crate::encode::{Encoder, FileOption, Shape, Storage};
 use crate::grid::Grid;
 use crate::integrate::MAX_CHANNELS;
-use crate::plan::{Plan, PlannedTable};
+use crate::plan::{Plan, PlannedMap, PlannedTable};
 
 /// What a bake may take if nothing else is said, where the machine has as much: the same plans are refused on every
 /// machine that is larger.
@@ -50,19 +50,32 @@ fn process_limit() -> Option<u64> {
 pub(super) fn check(plan: &Plan, limit: Option<u64>) -> Result<(), PipelineError> {
     let shared = shared(plan);
     let need = |t: &PlannedTable| table(t).saturating_add(shared);
-    let Some(largest) = plan.tables.iter().rev().max_by_key(|t| need(t)) else { return Ok(()) };
-    let needed = need(largest);
     let limit = limit.unwrap_or_else(|| available().map_or(MEMORY, |n| n.min(MEMORY)));
-    if needed <= limit {
-        return Ok(());
+    if let Some(largest) = plan.tables.iter().rev().max_by_key(|t| need(t))
+        && need(largest) > limit
+    {
+        return Err(PipelineError::Memory { table: largest.name().to_owned(), needed: need(largest), limit });
     }
-    Err(PipelineError::Memory { table: largest.name().to_owned(), needed, limit })
+    if let Some(largest) = plan.maps.iter().rev().max_by_key(|m| map(m))
+        && map(largest) > limit
+    {
+        return Err(PipelineError::MapMemory { map: largest.name().to_owned(), needed: map(largest), limit });
+    }
+    Ok(())
 }
 
 /// Most bytes that a plan takes.
 #[must_use]
 pub fn plan(plan: &Plan) -> u64 {
-    plan.tables.iter().map(table).max().unwrap_or(0).saturating_add(shared(plan))
+    let tables = plan.tables.iter().map(table).max().unwrap_or(0).saturating_add(shared(plan));
+    // maps are made when all tables are on the disk
+    plan.maps.iter().map(map).fold(tables, u64::max)
+}
+
+/// Most bytes that a map takes.
+#[must_use]
+pub fn map(planned: &PlannedMap) -> u64 {
+    memory_map::map(planned).saturating_add(FIXED)
 }
 
 /// Parts of files that several tables share: they are held until the last one is there, and joined.

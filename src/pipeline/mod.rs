@@ -18,6 +18,7 @@ pub mod map;
 #[cfg(feature = "scene")]
 pub mod materials;
 pub mod memory;
+mod memory_map;
 #[cfg(feature = "report")]
 pub mod pages;
 #[cfg(all(feature = "report", feature = "scene"))]
@@ -177,6 +178,20 @@ pub enum PipelineError {
     Memory {
         /// Table name.
         table: String,
+        /// Most bytes that it takes.
+        needed: u64,
+        /// Bytes that may be taken.
+        limit: u64,
+    },
+    /// A map that takes more memory than there is.
+    #[error(
+        "map {map} takes up to {} of memory, and {} may be taken. Take smaller images, or write fewer containers at once; \
+         or allow more, where the machine has it",
+        size(*.needed), size(*.limit)
+    )]
+    MapMemory {
+        /// Map name.
+        map: String,
         /// Most bytes that it takes.
         needed: u64,
         /// Bytes that may be taken.

@@ -117,17 +117,19 @@ mod load;
 mod preset;
 mod read_axis;
 mod read_map;
+mod read_sbrdf;
 mod read_size;
 mod section;
 mod span;
 mod write;
+mod write_map;
 
 pub use diagnostic::{Diagnostic, RecipeError};
 pub use engine::{Engine, EngineFile, Reader, Roughness, Shipped, engine};
 pub use engines::ENGINES;
 pub use load::{LoadError, load};
 pub use preset::{PRESETS, Preset, preset};
-pub use write::text;
+pub use write::{text, text_with_maps};
 
 use crate::plan::faults::Faults;
 use crate::plan::resolve::resolve;

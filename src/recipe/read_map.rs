@@ -1,5 +1,6 @@
 //! `[[map]]`: the keys of a map, each of its type. What they mean together is judged by the plan.
 
+use super::read_sbrdf;
 use super::section::{Section, as_number, wrong};
 use crate::functions::conversion::{By, CONVERSIONS, Conversion};
 use crate::maps::{Convention, RULES};
@@ -8,7 +9,7 @@ use crate::plan::Path;
 use crate::plan::fault::{Fault, unknown_word};
 use crate::plan::faults::Faults;
 use crate::plan::map::{
-    FromLobe, Input, MapDraft, MapRequest, Output, Packing, RoughnessInput, Source, words,
+    FromLobe, Input, MapDraft, MapRequest, Output, Packing, RoughnessInput, Second, Source, words,
 };
 use std::path::Path as File;
 use toml::de::{DeTable, DeValue};
@@ -17,6 +18,7 @@ const MAP: &[&str] = &[
     "name",
     "normal",
     "roughness",
+    "sbrdf",
     "packing",
     "factor",
     "rule",
@@ -30,7 +32,7 @@ const MAP: &[&str] = &[
 ];
 const NORMAL: &[&str] = &["file", "channels", "green", "z", "scale", "signed", "wrap", "mend", "resample"];
 const ROUGHNESS: &[&str] = &["file", "channel", "space", "holds", "from"];
-const FROM: &[&str] = &["lobe", "range", "log", "rule"];
+const FROM: &[&str] = &["lobe", "range", "log", "rule", "second", "angle"];
 const SWITCH: [(&str, bool); 2] = [("on", true), ("off", false)];
 
 /// Reads a map whose images lie in `folder`.
@@ -69,6 +71,9 @@ pub(super) fn read(table: &DeTable<'_>, path: &Path, folder: &File, faults: &mut
     set(&mut filter.shape, section.word("shape", &words::SHAPES, faults));
     set(&mut filter.effort, section.word("effort", &words::EFFORTS, faults));
     set(&mut filter.objective, section.word("objective", &words::OBJECTIVES, faults));
+    if let Some(value) = section.get("sbrdf") {
+        request.sbrdf = read_sbrdf::sbrdf(value, &section.path("sbrdf"), folder, faults);
+    }
     set(&mut request.packing, section.word("packing", &Packing::ALL, faults));
     set(&mut request.factor, section.number("factor", faults));
     set(&mut request.check, section.count("check", faults));
@@ -77,14 +82,14 @@ pub(super) fn read(table: &DeTable<'_>, path: &Path, folder: &File, faults: &mut
     MapDraft { request, no_name: name.is_none(), holes }
 }
 
-fn set<T>(to: &mut T, value: Option<T>) {
+pub(super) fn set<T>(to: &mut T, value: Option<T>) {
     if let Some(value) = value {
         *to = value;
     }
 }
 
 /// The file of an image, relative to the folder of the recipe.
-fn file(section: &Section<'_>, folder: &File, faults: &mut Faults) -> Option<Source> {
+pub(super) fn image_of(section: &Section<'_>, folder: &File, faults: &mut Faults) -> Option<Source> {
     section.require("file", "file = \"bark.png\"", faults);
     section.text("file", faults).map(|name| Source::File(folder.join(name)))
 }
@@ -101,7 +106,7 @@ fn normal(value: &DeValue<'_>, path: &Path, folder: &File, faults: &mut Faults) 
         return None;
     };
     let section = Section::new(table, path, "normal", NORMAL, faults);
-    let mut input = Input::new(file(&section, folder, faults)?);
+    let mut input = Input::new(image_of(&section, folder, faults)?);
     let Convention { green_down, derive_z, scale, mend } = &mut input.convention;
     set(green_down, section.word("green", &[("up", false), ("down", true)], faults));
     set(derive_z, section.word("z", &[("stored", false), ("derived", true)], faults));
@@ -170,7 +175,7 @@ fn roughness(value: &DeValue<'_>, path: &Path, folder: &File, faults: &mut Fault
         return None;
     };
     let section = Section::new(table, path, "roughness", ROUGHNESS, faults);
-    let image = file(&section, folder, faults)?;
+    let image = image_of(&section, folder, faults)?;
     let channel = section.text("channel", faults).unwrap_or_else(|| "G".to_owned());
     let space = section.word("space", &words::SPACES, faults).unwrap_or(Space::Linear);
     let gloss = section.word("holds", &[("roughness", false), ("gloss", true)], faults).unwrap_or(false);
@@ -187,11 +192,21 @@ fn from(value: &DeValue<'_>, path: &Path, faults: &mut Faults) -> Option<FromLob
     let section = Section::new(table, path, "from", FROM, faults);
     section.require("lobe", "lobe = \"blinn-phong\"", faults);
     section.require("range", "range = [1, 1024]", faults);
-    let lobes: Vec<(&'static str, &'static Conversion)> =
-        CONVERSIONS.iter().filter(|c| c.numbers.len() == 1).map(|c| (c.id, c)).collect();
+    let lobes: Vec<(&'static str, &'static Conversion)> = CONVERSIONS.iter().map(|c| (c.id, c)).collect();
     let conversion = section.word("lobe", &lobes, faults);
     let range = section.pair("range", faults);
     let log = section.word("log", &SWITCH, faults).unwrap_or(false);
     let by = section.word("rule", &words::RULES, faults).unwrap_or(By::Nearest);
-    Some(FromLobe { conversion: conversion?, range: range?, log, by })
+    let angle = section.text("angle", faults);
+    let second = match (section.text("second", faults), angle) {
+        (Some(channel), angle) => Some(Second { channel, angle }),
+        (None, None) => None,
+        (None, Some(_)) => {
+            let why = "an angle turns lobes of two numbers".to_owned();
+            let remedy = Some("name the channel of the second number too: `second = \"G\"`");
+            faults.value(section.path("angle"), Fault::Map { why, allowed: None, remedy });
+            return None;
+        }
+    };
+    Some(FromLobe { conversion: conversion?, range: range?, log, by, second })
 }

@@ -2,6 +2,8 @@
 //!
 //! The keys are those of the canonical form, so a new key is written without a line here. What an axis has by default is left out.
 
+use super::write_map;
+use crate::plan::map::MapRequest;
 use crate::plan::{TableRequest, canonical};
 use serde_json::{Map, Value as Json, json};
 use std::fmt::Write;
@@ -22,6 +24,18 @@ use std::fmt::Write;
 /// ```
 #[must_use]
 pub fn text(name: &str, tables: &[TableRequest]) -> String {
+    text_of(name, tables, Vec::new())
+}
+
+/// [`text`] with maps behind the tables: the whole of a plan. None where an image of a map lies in another file, as those of scenes may, or under
+/// a path that is no text.
+#[must_use]
+pub fn text_with_maps(name: &str, tables: &[TableRequest], maps: &[MapRequest]) -> Option<String> {
+    let maps: Option<Vec<Map<String, Json>>> = maps.iter().map(write_map::map).collect();
+    Some(text_of(name, tables, maps?))
+}
+
+fn text_of(name: &str, tables: &[TableRequest], maps: Vec<Map<String, Json>>) -> String {
     let mut out = format!("name = {}\n", string(name));
     for table in tables {
         out.push_str("\n[[table]]\n");
@@ -40,6 +54,10 @@ pub fn text(name: &str, tables: &[TableRequest]) -> String {
             out.push_str("\n[[table.axis]]\n");
             pairs(&mut out, &axis);
         }
+    }
+    for keys in maps {
+        out.push_str("\n[[map]]\n");
+        pairs(&mut out, &keys);
     }
     out
 }

@@ -57,6 +57,8 @@ pub struct Curve {
     fits: Vec<Fit>,
     /// Most that reading between nodes adds to a residual.
     pub between: f64,
+    /// What it adds behind each node.
+    lost: Vec<f64>,
     /// The mixture that the shapes were fitted to.
     pub mean: [f64; TERMS],
 }
@@ -113,14 +115,15 @@ impl Curve {
             shapes.push(problem.descend(&first, steps));
         }
         let fits: Vec<Fit> = problems.par_iter().zip(&shapes).map(|(p, s)| p.finish(s)).collect();
-        let mut curve = Curve { range, fits, between: 0.0, mean };
+        let mut curve = Curve { range, fits, between: 0.0, lost: Vec::new(), mean };
         let lost = |m: usize| {
             let r = at(m as f64 + 0.5);
             let (shapes, albedos, told) = curve.read(r, &mean);
             problem(r, mean, normalise).residual(&shapes, &albedos, &mean) - told
         };
-        let lost: Vec<f64> = (0..count - 1).into_par_iter().map(lost).collect();
-        curve.between = lost.into_iter().fold(0.0, f64::max);
+        let lost: Vec<f64> = (0..count - 1).into_par_iter().map(lost).map(|l| l.max(0.0)).collect();
+        curve.between = lost.iter().copied().fold(0.0, f64::max);
+        curve.lost = lost;
         Ok(curve)
     }
 
@@ -166,7 +169,8 @@ impl Curve {
         };
         let mut lobes: Vec<Placed> = (0..self.lobes()).map(lobe).collect();
         sort(&mut lobes);
-        let residual = channels.iter().map(|c| c.2).fold(0.0, f64::max) + self.between;
+        let lost = if t > 0.0 { self.lost.get(m).copied().unwrap_or(0.0) } else { 0.0 };
+        let residual = channels.iter().map(|c| c.2).fold(0.0, f64::max) + lost;
         Texel { diffuse: [0, 1, 2].map(|c| channels[c].1[0]), lobes, residual }
     }
 

@@ -5,7 +5,7 @@
 //! half the integral of the absolute difference of the unit lobes, is least.
 
 use super::{EXPONENTS, exponent};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Ratio of the powers of neighbouring levels.
 pub const RATIO: f64 = 4.0;
@@ -27,7 +27,7 @@ pub fn powers() -> Vec<f64> {
 }
 
 /// Where an exponent is read, and how far that is from its own lobe.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Rung {
     /// The exponent.
     pub exponent: f64,

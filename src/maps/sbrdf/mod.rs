@@ -12,11 +12,15 @@ pub mod fit;
 pub mod integral;
 pub mod ladder;
 pub mod nodes;
+pub mod tabulated;
 
 use glam::DVec3;
 
 /// Most lobes of a texel.
 pub const MOST_LOBES: usize = 3;
+
+/// Texels of the table of the integrals: along v, u = v |v|, and along the code of the exponent.
+pub const NORMALISATION: [usize; 2] = [129, 65];
 
 /// Range of exponents: what a fit may take, and what the codes 0 and 1 stand for, spread over the logarithm.
 pub const EXPONENTS: [f64; 2] = [1.0, 1e5];

@@ -10,7 +10,7 @@ use crate::maps::{
     Centre, Effort, Facet, Fitter, Footprint, Level, Lobe, Objective, RULES, Surface, Texel, reflected, rules,
 };
 use crate::picture::{Coverage, halved};
-use crate::plan::map::{Kind, MapRequest, Output};
+use crate::plan::map::{Held, Kind, MapRequest, Output};
 use crate::verify::seeds::Seeds;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -218,8 +218,7 @@ fn with_normals(
     let Some(first) = request.outputs.first().filter(|_| request.kinds().contains(&Kind::Normal)) else {
         return Ok(Vec::new());
     };
-    let one =
-        |normal: &Storage| stored(Some(&Output { normal: *normal, ..*first }), request, maps, k, cancel);
+    let one = |normal: &Storage| stored(Some(&first.stored(Held::Normal, *normal)), request, maps, k, cancel);
     NORMALS.iter().map(one).collect()
 }
 
@@ -254,9 +253,9 @@ impl Stored {
     /// The lobe that a shader makes of a texel; what is not written is taken as it was found.
     fn lobe(&self, texel: usize, own: &Texel) -> Lobe {
         let mut lobe = own.lobe();
-        let Some(r) = self.roughness.get(texel).copied().map(f64::from) else { return lobe };
-        lobe.alpha_min = r * r;
-        lobe.alpha_max = r * r;
+        if let Some(r) = self.roughness.get(texel).copied().map(f64::from) {
+            (lobe.alpha_min, lobe.alpha_max) = (r * r, r * r);
+        }
         if let Some((values, n, sense)) = &self.normal {
             let t = &values[texel * n..(texel + 1) * n];
             let (x, y) = (f64::from(t[0]), f64::from(t[1]) * f64::from(*sense));

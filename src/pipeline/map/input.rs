@@ -1,12 +1,16 @@
 //! The images of a planned map, decoded and judged texel by texel.
 
 use super::MapError;
+use super::certificate::Certificate;
+use super::sbrdf::{Colours, Target};
 use crate::cancel::Cancel;
 use crate::encode::read;
+use crate::maps::sbrdf::tabulated::Tabulated;
 use crate::maps::surface;
 use crate::maps::{Field, Surface, TexelFault};
 use crate::picture::{self, Picture, Plane, Space};
-use crate::plan::map::{Input, Packing, PlannedMap, RoughnessInput, Source};
+use crate::plan::map::sbrdf::{BRDF, Origin};
+use crate::plan::map::{FromLobe, Input, Packing, PlannedMap, RoughnessInput, Source};
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -15,56 +19,127 @@ pub(super) struct Sources {
     pub(super) surface: Surface,
     /// What the roughness is packed with: channels that are written as they are, and which of them it is.
     pub(super) packed: Option<(Picture, usize)>,
+    /// What a conversion of lobes of another kind costs.
+    pub(super) certificate: Option<Certificate>,
+    /// What lobes are fitted to, where they are asked for.
+    pub(super) target: Option<Target>,
     /// Name (without folder) and blake3 of each file, with its part.
     pub(super) files: Vec<(&'static str, String, String)>,
 }
 
-pub(super) fn read(planned: &PlannedMap, cancel: &Cancel) -> Result<Sources, MapError> {
-    let (request, size) = (&planned.asked, planned.size);
-    let mut files = Vec::new();
-    let mut load = |role: &'static str, image: &Source| -> Result<Picture, MapError> {
-        let (picture, hash) = open(image, cancel)?;
-        if planned.inputs.iter().any(|i| i.role == role && i.content != hash) {
+/// Opens the files of a planned map, and keeps their names.
+pub(super) struct Loader<'a> {
+    planned: &'a PlannedMap,
+    cancel: &'a Cancel,
+    files: Vec<(&'static str, String, String)>,
+}
+
+impl Loader<'_> {
+    /// Opens one, and compares its hash with that of the plan.
+    pub(super) fn load(&mut self, role: &'static str, image: &Source) -> Result<Picture, MapError> {
+        let (picture, hash) = open(image, self.cancel)?;
+        self.known(role, image, hash)?;
+        Ok(picture)
+    }
+
+    fn known(&mut self, role: &'static str, image: &Source, hash: String) -> Result<(), MapError> {
+        if self.planned.inputs.iter().any(|i| i.role == role && i.content != hash) {
             return Err(MapError::Changed { path: image.path() });
         }
-        files.push((role, image.name(), hash));
-        Ok(picture)
+        self.files.push((role, image.name(), hash));
+        Ok(())
+    }
+
+    fn table(&mut self, source: &Source) -> Result<Tabulated, MapError> {
+        let unread = |error| MapError::Read { path: source.path(), source: error };
+        let bytes = source.bytes(self.cancel).map_err(unread)?;
+        self.known(BRDF, source, blake3::hash(&bytes).to_hex().to_string())?;
+        let image = read::read_bytes_until(self.cancel, &bytes).map_err(unread)?;
+        let mut planes = image.channels.into_iter().map(|c| c.values);
+        let planes = [0; 3].map(|_| planes.next().unwrap_or_default());
+        Tabulated::new(planes).map_err(|fault| MapError::Table { path: source.path(), fault })
+    }
+}
+
+pub(super) fn read(planned: &PlannedMap, cancel: &Cancel) -> Result<Sources, MapError> {
+    let (request, size) = (&planned.asked, planned.size);
+    let mut loader = Loader { planned, cancel, files: Vec::new() };
+    let wrap = request.normal.as_ref().map_or([picture::Wrap::Repeat; 2], |n| n.wrap);
+    let mut surface = Surface {
+        size,
+        normals: Field::Constant([0.0, 0.0, 1.0]),
+        roughness: Field::Constant(0.0),
+        stretch: None,
+        residual: Field::Constant(0.0),
     };
-    let mut residual = Field::Constant(0.0);
-    let mut whole = None;
-    let roughness = match &request.roughness {
+    let (mut whole, mut certificate) = (None, None);
+    match &request.roughness {
         #[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]
-        RoughnessInput::Constant(r) => Field::Constant((*r * request.factor) as f32),
+        RoughnessInput::Constant(r) => surface.roughness = Field::Constant((*r * request.factor) as f32),
         RoughnessInput::Image { image, channel, space, gloss, from } => {
             let path = image.path();
-            let picture = load("roughness", image)?;
+            let picture = loader.load("roughness", image)?;
             find(&picture, &path, channel)?;
-            let wrap = request.normal.as_ref().map_or([picture::Wrap::Repeat; 2], |n| n.wrap);
             let picture = resampled(picture, size, wrap);
             let plane = find(&picture, &path, channel)?;
-            let field = match from {
-                None => roughness(plane, &picture, &path, (*space, *gloss, request.factor))?,
+            let factor = if from.is_some() { 1.0 } else { request.factor };
+            let codes = roughness(plane, &picture, &path, (*space, *gloss, factor))?;
+            match from {
+                None => surface.roughness = Field::Map(codes),
                 Some(from) => {
-                    let codes = roughness(plane, &picture, &path, (*space, *gloss, 1.0))?;
-                    let found = from.convert_all(&codes);
-                    residual = Field::Map(found.iter().map(|f| f[1]).collect());
-                    found.iter().map(|f| f[0]).collect()
+                    certificate =
+                        Some(convert(from, codes, (&picture, &path), (*space, *gloss), &mut surface)?);
                 }
-            };
+            }
             let index = picture.planes.iter().position(|p| p.name == plane.name).unwrap_or(0);
-            whole = Some((picture, index));
-            Field::Map(field)
+            whole = request.roughness.packs().then_some((picture, index));
         }
-    };
-    let normals = match &request.normal {
-        None => Field::Constant([0.0, 0.0, 1.0]),
-        Some(input) => {
-            let picture = load("normal", &input.image)?;
-            Field::Map(normals(&picture, input, size)?)
+    }
+    if let Some(input) = &request.normal {
+        let picture = loader.load("normal", &input.image)?;
+        surface.normals = Field::Map(normals(&picture, input, size)?);
+    }
+    let target = match request.sbrdf.as_ref().map(|s| &s.origin) {
+        None => None,
+        Some(Origin::Tabulated(source)) => {
+            let table = loader.table(source)?;
+            #[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]
+            let roughness = table.width().sqrt() as f32;
+            surface.roughness = Field::Constant(roughness);
+            Some(Target::Tabulated(table))
+        }
+        Some(Origin::Metallic { base, metallic }) => {
+            Some(Target::Metallic(Colours::read(base, metallic, (size, wrap), &mut loader)?))
         }
     };
     let packed = packed(request.packing, whole, size);
-    Ok(Sources { surface: Surface { size, normals, roughness, stretch: None, residual }, packed, files })
+    Ok(Sources { surface, packed, certificate, target, files: loader.files })
+}
+
+/// Codes that tell of lobes of another kind, as widths of GGX in a surface.
+fn convert(
+    from: &FromLobe,
+    codes: Vec<f32>,
+    (picture, path): (&Picture, &Path),
+    (space, gloss): (Space, bool),
+    surface: &mut Surface,
+) -> Result<Certificate, MapError> {
+    let lobes = match &from.second {
+        None => from.single(&codes)?,
+        Some(second) => {
+            let read = |name: &str, space: Space, gloss: bool| {
+                roughness(find(picture, path, name)?, picture, path, (space, gloss, 1.0))
+            };
+            let other = read(&second.channel, space, gloss)?;
+            // an angle is a number as it is
+            let angle = second.angle.as_ref().map(|a| read(a, Space::Linear, false)).transpose()?;
+            from.pairs(&codes, &other, angle.as_deref())?
+        }
+    };
+    surface.residual = Field::Map(lobes.costs.iter().map(|c| c[0]).collect());
+    surface.roughness = Field::Map(lobes.roughness);
+    surface.stretch = lobes.stretch;
+    Ok(Certificate::new(surface.size, from, lobes.costs, lobes.between))
 }
 
 /// What the roughness is packed with.
@@ -108,7 +183,7 @@ fn open(image: &Source, cancel: &Cancel) -> Result<(Picture, String), MapError> 
 }
 
 /// A picture in another size.
-fn resampled(picture: Picture, size: [usize; 2], wrap: [picture::Wrap; 2]) -> Picture {
+pub(super) fn resampled(picture: Picture, size: [usize; 2], wrap: [picture::Wrap; 2]) -> Picture {
     let own = [picture.width, picture.height];
     if own == size {
         return picture;
@@ -117,12 +192,12 @@ fn resampled(picture: Picture, size: [usize; 2], wrap: [picture::Wrap; 2]) -> Pi
     Picture { width: size[0], height: size[1], planes }
 }
 
-fn find<'a>(picture: &'a Picture, path: &Path, channel: &str) -> Result<&'a Plane, MapError> {
+pub(super) fn find<'a>(picture: &'a Picture, path: &Path, channel: &str) -> Result<&'a Plane, MapError> {
     picture.plane(channel).map_err(|source| MapError::Picture { path: path.to_owned(), source })
 }
 
 /// Judges every texel; the first fault is told, and how many there are.
-fn judged<T: Send>(
+pub(super) fn judged<T: Send>(
     path: &Path,
     width: usize,
     texels: usize,

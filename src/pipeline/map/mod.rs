@@ -4,21 +4,31 @@
 //! The folder gets the maps, with all levels, a map of errors, and a manifest that [`audit`](super::audit) reads. Nothing is
 //! written if anything fails.
 
+mod certificate;
 mod check;
+mod from_lobe;
 mod input;
 mod output;
 mod pictured;
 mod record;
+mod sbrdf;
 
-pub use crate::plan::map::{FromLobe, Input, MapRequest, Output, RoughnessInput};
+pub use crate::plan::map::sbrdf::{ColourInput, NumberInput, Origin};
+pub use crate::plan::map::{
+    FromLobe, Input, MapRequest, Output, RoughnessInput, SbrdfRequest, Second, Source,
+};
+pub use certificate::{CertificateRecord, Gained, Worst};
 pub use check::{Measured, RuleMeasured, StoredMeasured};
 pub use pictured::Pictured;
 pub use record::{InputRecord, Job, LevelRecord, MapEntry, MapFile, MapRecord, Place};
+pub use sbrdf::{Ladder, Normalisation, Residual, SbrdfRecord};
 
 use super::{Event, MANIFEST, PipelineError, Progress, Settings};
 use crate::cancel::{Cancel, Cancelled};
 use crate::encode::{EncodeError, ReadError};
+use crate::maps::sbrdf::tabulated::TableFault;
 use crate::maps::{self, FilterError, TexelFault};
+use crate::models::ParamError;
 use crate::picture::PictureError;
 use crate::plan::map::PlannedMap;
 use crate::plan::{Plan, PlanError};
@@ -59,6 +69,17 @@ pub enum MapError {
         /// Other texels with a fault.
         others: usize,
     },
+    /// A table that is no BRDF.
+    #[error("{path}: {fault}")]
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        fault: TableFault,
+    },
+    /// A number of a lobe that a model does not take.
+    #[error("conversion: {0}")]
+    Lobe(#[from] ParamError),
     /// A file that is another one than when it was planned.
     #[error("{path} has changed since the map was planned; run it again")]
     Changed {
@@ -166,9 +187,17 @@ pub(super) fn make(
     let sources = input::read(planned, cancel)?;
     let tell = |done, texels| progress.event(&Event::MapProgress { map: name, index, done, texels });
     let levels = maps::filter(&sources.surface, &request.filter, cancel, &tell)?;
-    let maps = output::plan(request, &sources, &levels, cancel)?;
+    let lobes = match (&request.sbrdf, &sources.target) {
+        (Some(sbrdf), Some(target)) => Some((sbrdf, sbrdf::find(sbrdf, target, &levels, cancel)?)),
+        _ => None,
+    };
+    let maps = output::plan(request, &sources, &levels, lobes.as_ref().map(|l| &l.1), cancel)?;
     let measured = check::measure(request, &sources.surface, &levels, &maps, cancel)?;
-    let record = record::record(plan, planned, &sources, &levels, measured);
+    let mut record = record::record(plan, planned, &sources, &levels, measured);
+    if let Some((sbrdf, found)) = &lobes {
+        record.sbrdf = Some(found.record(request, sbrdf, &maps, cancel)?);
+    }
+    drop(lobes);
     let files = output::files(planned, &maps, &record, cancel)?;
     let told = record.levels.iter().map(|l| f64::from(l.largest)).fold(0.0, f64::max);
     let entry = record.with(&files);

@@ -2,13 +2,14 @@
 
 use super::MapError;
 use super::input::Sources;
+use super::sbrdf::{self, Found};
 use crate::cancel::Cancel;
 use crate::encode::mips::{self, MipLevel, Mips};
 use crate::encode::{EncodeError, Storage};
 use crate::functions::conversion::gltf_anisotropy;
 use crate::grid::Channel;
 use crate::maps::{Level, Texel, signs};
-use crate::picture::shrink;
+use crate::picture::{halved, shrink};
 use crate::plan::map::{self, Kind, MapRequest, PlannedMap};
 
 /// A map before it is rounded.
@@ -59,7 +60,7 @@ pub(super) struct File {
     pub(super) bytes: Vec<u8>,
 }
 
-fn channel(id: &str, meaning: &str, range: [f64; 2]) -> Channel {
+pub(super) fn channel(id: &str, meaning: &str, range: [f64; 2]) -> Channel {
     Channel { id: id.to_owned(), meaning: meaning.to_owned(), range, role: String::new() }
 }
 
@@ -68,10 +69,32 @@ pub(super) fn plan(
     request: &MapRequest,
     sources: &Sources,
     levels: &[Level<'_>],
+    lobes: Option<&Found>,
     cancel: &Cancel,
 ) -> Result<Vec<Map>, MapError> {
-    let one = |kind| map(kind, request, sources, levels).compressed(request, cancel);
+    let constants = request.sbrdf.as_ref().is_some_and(|s| s.constants());
+    let one = |kind| {
+        let of_lobes = lobes.and_then(|found| sbrdf::map(kind, found, constants, levels));
+        let made = match of_lobes {
+            Some((channels, levels)) => Map { kind, channels, levels, blocks: Vec::new() },
+            None => map(kind, request, sources, levels),
+        };
+        made.compressed(request, cancel)
+    };
     request.kinds().into_iter().map(one).collect()
+}
+
+/// All levels of a picture of some channels: means of areas.
+pub(super) fn pyramid(size: [usize; 2], channels: usize, values: Vec<f32>) -> Vec<MipLevel> {
+    let mut planes: Vec<Vec<f32>> =
+        (0..channels).map(|c| values.iter().skip(c).step_by(channels).copied().collect()).collect();
+    let mut out = vec![MipLevel { size, values }];
+    for pair in halved(size[0], size[1]).windows(2) {
+        planes.iter_mut().for_each(|p| *p = shrink(p, pair[0], pair[1]));
+        let texel = |i: usize| planes.iter().map(move |p| p[i]);
+        out.push(MipLevel { size: pair[1], values: (0..pair[1][0] * pair[1][1]).flat_map(texel).collect() });
+    }
+    out
 }
 
 fn map(kind: Kind, request: &MapRequest, sources: &Sources, levels: &[Level<'_>]) -> Map {
@@ -102,7 +125,10 @@ fn map(kind: Kind, request: &MapRequest, sources: &Sources, levels: &[Level<'_>]
             };
             (channels, levels.iter().zip(&directions).map(level).collect())
         }
-        Kind::Error => {
+        Kind::Conversion => {
+            sources.certificate.as_ref().map_or_else(|| (Vec::new(), Vec::new()), |c| c.map())
+        }
+        _ => {
             let channels = vec![
                 channel(
                     "distance",

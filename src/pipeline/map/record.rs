@@ -1,14 +1,17 @@
 //! What the files of a map say of themselves: inputs, rule, and how far every level is from the texels that it stands for.
 
 use super::RoughnessInput;
+use super::certificate::{Certificate, CertificateRecord};
 use super::check::Measured;
 use super::input::Sources;
 use super::output::File;
 use super::pictured::{self, Pictured};
+use super::sbrdf::SbrdfRecord;
 use crate::encode::Storage;
 use crate::grid::Channel;
 use crate::maps::Level;
-use crate::plan::map::{PlannedMap, words};
+use crate::plan::map::sbrdf::{BASE, ColourInput, METALLIC, NumberInput, Origin};
+use crate::plan::map::{MapRequest, PlannedMap, words};
 use serde::{Deserialize, Serialize};
 
 /// Version of this layout.
@@ -54,6 +57,12 @@ pub struct MapRecord {
     /// What the first of them stand for, as a contact sheet draws it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pictured: Vec<Pictured>,
+    /// What the conversion of lobes of another kind costs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub conversion: Option<CertificateRecord>,
+    /// Lobes that are written in place of the roughness.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sbrdf: Option<SbrdfRecord>,
 }
 
 /// Name and hash, as tables have them.
@@ -68,7 +77,7 @@ pub struct Job {
 /// A file that was read.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct InputRecord {
-    /// `normal` or `roughness`.
+    /// `normal`, `roughness`; of lobes `base`, `metallic`, `brdf`.
     pub role: String,
     /// Its name, without the folder; the number, if it is one.
     pub file: String,
@@ -116,8 +125,12 @@ pub struct LevelRecord {
 impl MapRecord {
     /// The text of one file.
     pub(super) fn of(&self, map: &str, channels: &[Channel], storage: Storage) -> String {
+        let short = self.sbrdf.as_ref().map(SbrdfRecord::short);
         let mut value = serde_json::to_value(self).unwrap_or_default();
         if let Some(fields) = value.as_object_mut() {
+            if let Some(short) = short {
+                fields.insert("sbrdf".to_owned(), serde_json::to_value(short).unwrap_or_default());
+            }
             fields.insert("map".to_owned(), map.into());
             fields.insert("channels".to_owned(), serde_json::to_value(channels).unwrap_or_default());
             fields.insert("storage".to_owned(), storage.id().into());
@@ -156,7 +169,7 @@ pub struct MapEntry {
 pub struct MapFile {
     /// Name, relative to the manifest.
     pub file: String,
-    /// Kind of map: `roughness`, `normal`, `anisotropy`, `error`.
+    /// Kind of map: `roughness`, `normal`, `lobe1.shape`.
     pub map: String,
     /// Its level, in containers with a file a level.
     #[serde(skip_serializing_if = "Option::is_none", default)]
@@ -193,8 +206,11 @@ pub(super) fn record(
         .collect();
     if let RoughnessInput::Constant(r) = &request.roughness {
         let (role, file) = ("roughness".to_owned(), r.to_string());
-        inputs.push(InputRecord { role, file, blake3: String::new() });
+        if !request.sbrdf.as_ref().is_some_and(|s| matches!(s.origin, Origin::Tabulated(_))) {
+            inputs.push(InputRecord { role, file, blake3: String::new() });
+        }
     }
+    inputs.extend(numbers(request));
     let listed = worst(levels);
     MapRecord {
         schema: SCHEMA,
@@ -212,7 +228,26 @@ pub(super) fn record(
         levels: levels.iter().zip(measured).map(|(l, m)| level(l, m)).collect(),
         pictured: pictured::pictured(&sources.surface, levels, &listed),
         worst: listed,
+        conversion: sources.certificate.as_ref().map(Certificate::record),
+        sbrdf: None,
     }
+}
+
+/// Colours of lobes that are numbers.
+fn numbers(request: &MapRequest) -> Vec<InputRecord> {
+    let mut out = Vec::new();
+    let mut put = |role: &str, file: String| {
+        out.push(InputRecord { role: role.to_owned(), file, blake3: String::new() });
+    };
+    if let Some(Origin::Metallic { base, metallic }) = request.sbrdf.as_ref().map(|s| &s.origin) {
+        if let ColourInput::Constant(c) = base {
+            put(BASE, c.map(|v| v.to_string()).join(","));
+        }
+        if let NumberInput::Constant(m) = metallic {
+            put(METALLIC, m.to_string());
+        }
+    }
+    out
 }
 
 fn level(level: &Level<'_>, measured: Option<Measured>) -> LevelRecord {

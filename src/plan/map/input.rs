@@ -5,7 +5,6 @@ use crate::encode::{ReadError, read};
 use crate::functions::conversion::{By, Conversion};
 use crate::maps::Convention;
 use crate::picture::{self, PictureError, Space, Wrap};
-use rayon::prelude::*;
 use std::borrow::Cow;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -95,7 +94,7 @@ impl Input {
     }
 
     /// The channels that are read.
-    pub(super) fn used(&self) -> &[String] {
+    pub(crate) fn used(&self) -> &[String] {
         &self.channels[..if self.convention.derive_z { 2 } else { 3 }]
     }
 }
@@ -127,12 +126,27 @@ impl RoughnessInput {
         let (channel, space) = ("G".to_owned(), Space::Linear);
         RoughnessInput::Image { image: image.into(), channel, space, gloss: false, from: None }
     }
+
+    /// What the codes tell of, if it is no roughness.
+    #[must_use]
+    pub fn from(&self) -> Option<&FromLobe> {
+        match self {
+            RoughnessInput::Image { from, .. } => from.as_ref(),
+            RoughnessInput::Constant(_) => None,
+        }
+    }
+
+    /// May the other channels of the image be written beside the roughness? Not where they are numbers of lobes of another kind.
+    #[must_use]
+    pub fn packs(&self) -> bool {
+        self.from().is_none_or(|from| from.second.is_none())
+    }
 }
 
 /// Codes of lobes of another kind.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct FromLobe {
-    /// The parametrisation, of one number.
+    /// The parametrisation.
     pub conversion: &'static Conversion,
     /// Numbers of the codes 0 and 1.
     pub range: [f64; 2],
@@ -140,41 +154,41 @@ pub struct FromLobe {
     pub log: bool,
     /// How the lobe becomes GGX.
     pub by: By,
+    /// The second number, of a parametrisation of two.
+    pub second: Option<Second>,
+}
+
+/// Where the second number comes from: the same image, range and spread.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Second {
+    /// Name of its channel.
+    pub channel: String,
+    /// Name of the channel of the angle of the first axis from the tangent, if there is one: codes 0..1 are half a turn.
+    pub angle: Option<String>,
 }
 
 impl PartialEq for FromLobe {
     fn eq(&self, other: &FromLobe) -> bool {
         let key = |f: &FromLobe| (f.conversion.id, f.range.map(f64::to_bits), f.log, f.by);
-        key(self) == key(other)
+        key(self) == key(other) && self.second == other.second
     }
 }
 
 impl FromLobe {
-    /// Roughness and D of a code.
-    #[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]
-    fn convert(&self, code: f32) -> [f32; 2] {
-        let [lo, hi] = self.range;
-        let c = f64::from(code);
-        let number = if self.log { lo * libm::pow(hi / lo, c) } else { lo + (hi - lo) * c };
-        let found = self.conversion.convert([number.clamp(lo.min(hi), lo.max(hi)); 2], self.by);
-        [found.alphas[0].min(1.0).sqrt() as f32, found.distance as f32]
-    }
-
-    /// The same of many codes, each of them once.
+    /// The number of a code.
     #[must_use]
-    pub fn convert_all(&self, codes: &[f32]) -> Vec<[f32; 2]> {
-        let mut keys: Vec<u32> = codes.iter().map(|c| c.to_bits()).collect();
-        keys.sort_unstable();
-        keys.dedup();
-        let found: Vec<[f32; 2]> = keys.par_iter().map(|k| self.convert(f32::from_bits(*k))).collect();
-        let at = |c: &f32| keys.binary_search(&c.to_bits()).map_or([0.0; 2], |i| found[i]);
-        codes.iter().map(at).collect()
+    pub fn number(&self, code: f64) -> f64 {
+        let [lo, hi] = self.range;
+        let number = if self.log { lo * libm::pow(hi / lo, code) } else { lo + (hi - lo) * code };
+        number.clamp(lo.min(hi), lo.max(hi))
     }
 }
 
 /// What is known of an image without its pixels.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Facts {
+    /// Id of the reader: of a container, or `picture`.
+    pub(super) format: &'static str,
     pub(super) size: [usize; 2],
     pub(super) names: Vec<String>,
     pub(super) blake3: String,
@@ -200,15 +214,17 @@ pub(super) fn facts(source: &Source) -> Result<Facts, Unknown> {
     let cancel = Cancel::new();
     let bytes = source.bytes(&cancel).map_err(Unknown::Read)?;
     let blake3 = blake3::hash(&bytes).to_hex().to_string();
-    let (size, names) = if picture::MAGIC.iter().any(|(magic, _)| bytes.starts_with(magic)) {
-        picture::facts(&bytes).map_err(Unknown::Picture)?
+    let (format, size, names) = if picture::MAGIC.iter().any(|(magic, _)| bytes.starts_with(magic)) {
+        let (size, names) = picture::facts(&bytes).map_err(Unknown::Picture)?;
+        ("picture", size, names)
     } else {
         let image = read::read_bytes_until(&cancel, &bytes).map_err(Unknown::Read)?;
-        ([image.width, image.height], image.channels.into_iter().map(|c| c.name).collect())
+        let names = image.channels.into_iter().map(|c| c.name).collect();
+        (image.format, [image.width, image.height], names)
     };
     let [width, height] = size;
     if width.saturating_mul(height) > picture::MAX_PIXELS || width * height == 0 {
         return Err(Unknown::Picture(PictureError::Pixels { width, height }));
     }
-    Ok(Facts { size, names, blake3 })
+    Ok(Facts { format, size, names, blake3 })
 }

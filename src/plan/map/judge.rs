@@ -1,10 +1,9 @@
 //! Whether a map can be made: its numbers, what goes with what, and its images.
 
-use super::input::{Facts, Unknown, facts};
-use super::{Input, MapRequest, RoughnessInput, Source, fault};
-use crate::encode::{ReadError, mips};
+use super::images::Images;
+use super::{FromLobe, MapRequest, RoughnessInput, fault, sbrdf};
+use crate::encode::mips;
 use crate::maps::{Centre, Objective, Shape, rules};
-use crate::picture::MAX_PIXELS;
 use crate::plan::fault::Fault;
 use crate::plan::faults::Faults;
 use crate::plan::identity;
@@ -54,18 +53,42 @@ pub(super) fn judge(request: &MapRequest, path: &Path, faults: &mut Faults) {
     match &request.roughness {
         RoughnessInput::Constant(r) => range(path.key("roughness"), "roughness", *r, [0.0, 1.0]),
         RoughnessInput::Image { from: Some(from), .. } => {
-            let (_, bounds) = from.conversion.numbers[0];
+            let whole = |[lo, hi]: [f64; 2], (_, [a, b]): &(&str, [f64; 2])| [lo.max(*a), hi.min(*b)];
+            let [lo, hi] = from.conversion.numbers.iter().fold([f64::MIN, f64::MAX], whole);
             let place = path.key("roughness").key("from").key("range");
-            let least = if from.log { bounds[0].max(LEAST_LOG) } else { bounds[0] };
+            let least = if from.log { lo.max(LEAST_LOG) } else { lo };
             for (i, end) in from.range.iter().enumerate() {
-                range(place.index(i), "range", *end, [least, bounds[1]]);
+                range(place.index(i), "range", *end, [least, hi]);
             }
             range(path.key("factor"), "factor", request.factor, [1.0, 1.0]);
+            second(request, from, &path.key("roughness").key("from"), faults);
         }
         RoughnessInput::Image { .. } => {}
     }
+    if let Some(sbrdf) = &request.sbrdf {
+        sbrdf::judge(request, sbrdf, path, faults);
+    }
     outputs(request, path, faults);
 }
+
+/// A parametrisation of two numbers has a second channel, and is written with two widths.
+fn second(request: &MapRequest, from: &FromLobe, path: &Path, faults: &mut Faults) {
+    let (id, two) = (from.conversion.id, from.conversion.numbers.get(1));
+    let (why, remedy) = match (two, &from.second) {
+        (None, None) => return,
+        (None, Some(_)) => (format!("{id} has one number"), "leave `second` out"),
+        (Some((name, _)), None) => {
+            (format!("{id} has two numbers, and the channel of {name} is not named"), SECOND)
+        }
+        (Some(_), Some(_)) if request.filter.shape != Shape::Anisotropic => {
+            (format!("{id} tells of two widths"), "ask for the shape anisotropic")
+        }
+        (Some(_), Some(_)) => return,
+    };
+    faults.value(path.key("second"), fault(why, None, Some(remedy)));
+}
+
+const SECOND: &str = "name the channel of the second one: `second = \"G\"`";
 
 /// At least one output, and no container twice: both would write the same files.
 fn outputs(request: &MapRequest, path: &Path, faults: &mut Faults) {
@@ -82,32 +105,38 @@ fn outputs(request: &MapRequest, path: &Path, faults: &mut Faults) {
     }
 }
 
-/// Size and images of a map that can be made of them.
-pub(super) fn images(
-    request: &MapRequest,
-    path: &Path,
-    faults: &mut Faults,
-) -> Option<([usize; 2], Vec<identity::Input>)> {
-    let (mut inputs, mut sizes, mut packed) = (Vec::new(), Vec::new(), 1);
+/// What is known of the images of a map that can be made of them.
+pub(super) struct Looked {
+    pub(super) size: [usize; 2],
+    /// Texels times channels, of all of them.
+    pub(super) numbers: u64,
+    /// Channels of that of the roughness.
+    pub(super) packed: usize,
+    pub(super) inputs: Vec<identity::Input>,
+}
+
+/// Looks at the images of a map.
+pub(super) fn images(request: &MapRequest, path: &Path, faults: &mut Faults) -> Option<Looked> {
     let before = faults.len();
-    if let RoughnessInput::Image { image, channel, .. } = &request.roughness {
+    let (mut images, mut packed) = (Images::default(), 1);
+    if let RoughnessInput::Image { image, channel, from, .. } = &request.roughness {
         let place = path.key("roughness");
-        if let Some(facts) = look(image, &place, faults) {
-            has(&facts, channel, &place.key("channel"), faults);
-            packed = facts.names.len();
-            sizes.push((image, facts.size));
-            inputs.push(identity::Input { role: "roughness".to_owned(), content: facts.blake3 });
+        let mut named = vec![(channel.as_str(), place.key("channel"))];
+        if let Some(second) = from.as_ref().and_then(|f| f.second.as_ref()) {
+            let from = place.key("from");
+            named.push((second.channel.as_str(), from.key("second")));
+            named.extend(second.angle.iter().map(|a| (a.as_str(), from.key("angle"))));
         }
+        packed = images.look("roughness", image, &named, &place, faults).unwrap_or(1);
     }
     if let Some(normal) = &request.normal {
         let place = path.key("normal");
-        if let Some(facts) = look(&normal.image, &place, faults) {
-            for (i, name) in normal.used().iter().enumerate() {
-                has(&facts, name, &place.key("channels").index(i), faults);
-            }
-            sizes.push((&normal.image, facts.size));
-            inputs.push(identity::Input { role: "normal".to_owned(), content: facts.blake3 });
-        }
+        let at = |i: usize| place.key("channels").index(i);
+        let named: Vec<_> = normal.used().iter().enumerate().map(|(i, n)| (n.as_str(), at(i))).collect();
+        images.look("normal", &normal.image, &named, &place, faults);
+    }
+    if let Some(sbrdf) = &request.sbrdf {
+        sbrdf::look(sbrdf, path, &mut images, faults);
     }
     if faults.len() > before {
         return None;
@@ -122,53 +151,22 @@ pub(super) fn images(
             }
         }
     }
-    let Some(&(_, first)) = sizes.first() else {
-        let why = "neither a normal map nor a roughness map is given: there is nothing to filter".to_owned();
-        faults.value(path.clone(), fault(why, None, Some("add `normal = \"normal.png\"`")));
-        return None;
+    let resample = request.normal.as_ref().is_some_and(|n| n.resample);
+    let size = match images.size(resample, faults) {
+        Some(size) => size,
+        // of numbers alone one texel is fitted
+        None if request.sbrdf.is_some() => [1, 1],
+        None => {
+            let why =
+                "neither a normal map nor a roughness map is given: there is nothing to filter".to_owned();
+            faults.value(path.clone(), fault(why, None, Some("add `normal = \"normal.png\"`")));
+            return None;
+        }
     };
-    let size = sizes.iter().fold(first, |a, (_, b)| [a[0].max(b[0]), a[1].max(b[1])]);
-    if let Some((other, own)) = sizes.iter().find(|(_, own)| *own != first)
-        && !request.normal.as_ref().is_some_and(|n: &Input| n.resample)
-    {
-        let told = |image: &Source, [w, h]: [usize; 2]| format!("{} has {w} x {h}", image.path().display());
-        let why = format!(
-            "{} texels, {}: maps of one surface have one size",
-            told(other, *own),
-            told(sizes[0].0, first)
-        );
-        faults.value(
-            path.key("normal"),
-            fault(why, None, Some("resample one of them, or ask for it: `resample = \"on\"`")),
-        );
-    } else if size[0] * size[1] > MAX_PIXELS {
-        let why = format!("the larger of both sizes is {} x {} texels", size[0], size[1]);
-        faults.value(path.key("normal"), fault(why, Some(format!("allowed: {MAX_PIXELS} texels")), None));
-    }
-    (faults.len() == before).then_some((size, inputs))
-}
-
-/// What is known of an image, or a fault.
-fn look(image: &Source, place: &Path, faults: &mut Faults) -> Option<Facts> {
-    let unknown = match facts(image) {
-        Ok(facts) => return Some(facts),
-        Err(unknown) => unknown,
-    };
-    let (why, io) = match &unknown {
-        // the path is told once, and in the same words on every system
-        Unknown::Read(ReadError::Io { source, .. }) => (source.kind().to_string(), true),
-        other => (other.to_string(), false),
-    };
-    let file = image.path().display().to_string();
-    faults.value(place.key("file"), Fault::Image { file, why, io });
-    None
-}
-
-/// An image must have a channel; grey serves for any colour.
-fn has(facts: &Facts, name: &str, place: &Path, faults: &mut Faults) {
-    let grey = ["R", "G", "B"].contains(&name) && facts.names.iter().any(|n| n == "Y");
-    if !grey && !facts.names.iter().any(|n| n == name) {
-        let why = format!("no channel `{name}`; there is {}", facts.names.join(", "));
-        faults.value(place.clone(), fault(why, None, Some("name one of them")));
-    }
+    (faults.len() == before).then_some(Looked {
+        size,
+        numbers: images.numbers,
+        packed,
+        inputs: images.inputs,
+    })
 }

@@ -3,12 +3,15 @@
 //! A planned map knows its images: that they are there, their sizes, channels and hashes, and so the names of all of its files. What
 //! is in them is judged when it is baked.
 
+mod images;
 mod input;
 mod judge;
 mod output;
+pub mod sbrdf;
 
-pub use input::{FromLobe, Input, RoughnessInput, Source};
-pub use output::{Kind, Output};
+pub use input::{FromLobe, Input, RoughnessInput, Second, Source};
+pub use output::{Held, Kind, Output};
+pub use sbrdf::SbrdfRequest;
 
 use super::fault::Fault;
 use super::faults::Faults;
@@ -16,6 +19,7 @@ use super::identity::{self, Hasher};
 use super::place::Path;
 use crate::encode::mips;
 use crate::functions::conversion::By;
+use crate::maps::sbrdf::{NORMALISATION, Normalise};
 use crate::maps::{self, Centre, Convention, Effort, Objective, Shape};
 use crate::picture::{Space, Wrap, halved};
 use serde_json::{Value as Json, json};
@@ -40,7 +44,7 @@ impl Packing {
 
 /// Words of the keys of a map, as recipes have them.
 pub mod words {
-    use super::{By, Centre, Effort, Objective, Shape, Space, Wrap};
+    use super::{By, Centre, Effort, Normalise, Objective, Shape, Space, Wrap};
 
     /// `normals`: what lobes stand about.
     pub const CENTRES: [(&str, Centre); 2] = [("mean", Centre::Mean), ("fit", Centre::Free)];
@@ -60,6 +64,10 @@ pub mod words {
     /// `from.rule`.
     pub const RULES: [(&str, By); 2] = [("nearest", By::Nearest), ("formula", By::Formula)];
 
+    /// `sbrdf.normalise`.
+    pub const NORMALISE: [(&str, Normalise); 2] =
+        [(Normalise::Incident.id(), Normalise::Incident), (Normalise::Largest.id(), Normalise::Largest)];
+
     /// The word of a value.
     pub fn of<T: PartialEq>(words: &[(&'static str, T)], value: &T) -> &'static str {
         words.iter().find(|(_, v)| v == value).map_or("", |(word, _)| word)
@@ -75,6 +83,8 @@ pub struct MapRequest {
     pub normal: Option<Input>,
     /// The roughness.
     pub roughness: RoughnessInput,
+    /// Lobes that are written in its place.
+    pub sbrdf: Option<SbrdfRequest>,
     /// What is written beside it.
     pub packing: Packing,
     /// Factor of the roughness: `roughnessFactor` of glTF. What is written stands for a factor of 1.
@@ -100,7 +110,8 @@ impl MapRequest {
             RoughnessInput::Image { image, .. } => Some(image),
             RoughnessInput::Constant(_) => None,
         };
-        let all = self.normal.iter().map(|n| &n.image).chain(roughness);
+        let lobes = self.sbrdf.iter().flat_map(SbrdfRequest::images).map(|(_, image)| image);
+        let all = self.normal.iter().map(|n| &n.image).chain(roughness).chain(lobes);
         all.filter(|s| matches!(s, Source::File(_))).map(Source::path).collect()
     }
 
@@ -111,6 +122,7 @@ impl MapRequest {
             name: name.into(),
             normal,
             roughness,
+            sbrdf: None,
             packing: Packing::default(),
             factor: 1.0,
             filter: maps::Settings {
@@ -156,6 +168,9 @@ impl MapRequest {
                 if let Some(from) = from {
                     let rule = words::of(&words::RULES, &from.by);
                     out["from"] = json!({ "lobe": from.conversion.id, "range": from.range, "log": from.log, "rule": rule });
+                    if let Some(Second { channel, angle }) = &from.second {
+                        out["from"]["second"] = json!({ "channel": channel, "angle": angle });
+                    }
                 }
                 out
             }
@@ -163,7 +178,7 @@ impl MapRequest {
         let filter = &self.filter;
         // in their order: D after storage is that of the first
         let outputs: Vec<String> = self.outputs.iter().map(ToString::to_string).collect();
-        json!({
+        let mut whole = json!({
             "normal": normal,
             "roughness": roughness,
             "packing": words::of(&Packing::ALL, &self.packing),
@@ -176,7 +191,11 @@ impl MapRequest {
             "outputs": outputs,
             "check": self.check,
             "compare": self.compare,
-        })
+        });
+        if let Some(sbrdf) = &self.sbrdf {
+            whole["sbrdf"] = sbrdf.canonical();
+        }
+        whole
     }
 }
 
@@ -201,6 +220,10 @@ pub struct PlannedMap {
     pub asked: MapRequest,
     /// Width and height of the first level, in texels.
     pub size: [usize; 2],
+    /// Numbers in its images: texels times channels, of all of them.
+    pub numbers: u64,
+    /// Channels of the image of its roughness.
+    packed: usize,
     /// Its images.
     pub inputs: Vec<identity::Input>,
     /// Hash over everything that the bytes of its files depend on; see [`identity`].
@@ -220,13 +243,20 @@ impl PlannedMap {
         halved(self.size[0], self.size[1]).len()
     }
 
+    /// Channels of a kind of map.
+    #[must_use]
+    pub fn channels(&self, kind: Kind) -> usize {
+        self.asked.channels(kind, self.packed)
+    }
+
     /// Names of its files, kind by kind and output by output.
     #[must_use]
     pub fn files(&self) -> Vec<String> {
         let mut names = Vec::new();
         for kind in self.asked.kinds() {
             for output in &self.asked.outputs {
-                let ends = mips::ends(output.encoder, self.levels());
+                let [w, h] = if kind == Kind::Normalisation { NORMALISATION } else { self.size };
+                let ends = mips::ends(output.encoder, halved(w, h).len());
                 names.extend(ends.iter().map(|end| file(&self.asked.name, kind, end)));
             }
         }
@@ -278,8 +308,8 @@ pub(super) fn resolve(draft: MapDraft, path: &Path, faults: &mut Faults) -> Opti
     if faults.len() > before || draft.no_name {
         return None;
     }
-    let (size, inputs) = images?;
-    Some(PlannedMap { asked: draft.request, size, inputs, identity: String::new() })
+    let judge::Looked { size, numbers, packed, inputs } = images?;
+    Some(PlannedMap { asked: draft.request, size, numbers, packed, inputs, identity: String::new() })
 }
 
 /// A fault of a map.

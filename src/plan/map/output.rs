@@ -1,8 +1,9 @@
 //! The files of a map: containers, and how each kind of map is stored in them.
 
-use super::{MapRequest, Packing, RoughnessInput};
+use super::{MapRequest, Packing, RoughnessInput, SbrdfRequest};
 use crate::encode::mips::{self, containers};
 use crate::encode::{Encoder, Storage};
+use crate::maps::sbrdf::MOST_LOBES;
 use crate::maps::{Centre, Shape};
 use crate::plan::fault::{Fault, unknown_word};
 
@@ -17,30 +18,119 @@ pub enum Kind {
     Anisotropy,
     /// D of each texel, and its doubt.
     Error,
+    /// What a conversion of lobes of another kind costs: D, and the largest difference of the reflectance.
+    Conversion,
+    /// Diffuse albedo beside lobes.
+    Diffuse,
+    /// Albedo of a lobe, counted from 0.
+    Albedo(usize),
+    /// Axis and exponent of a lobe.
+    Shape(usize),
+    /// How far lobes are from what they stand for.
+    Residual,
+    /// The table of the integrals of lobes.
+    Normalisation,
 }
 
-impl Kind {
-    /// Every kind, in the order in which they are written.
-    pub const ALL: [Kind; 4] = [Kind::Roughness, Kind::Normal, Kind::Anisotropy, Kind::Error];
+/// Ids of the maps of the lobes.
+const ALBEDOS: [&str; MOST_LOBES] = ["lobe1.albedo", "lobe2.albedo", "lobe3.albedo"];
+const SHAPES: [&str; MOST_LOBES] = ["lobe1.shape", "lobe2.shape", "lobe3.shape"];
 
+impl Kind {
     /// Id, as in the names of files.
     #[must_use]
-    pub const fn id(self) -> &'static str {
+    pub fn id(self) -> &'static str {
+        let lobe = |ids: [&'static str; MOST_LOBES], j: usize| ids.get(j).copied().unwrap_or("lobe");
         match self {
             Kind::Roughness => "roughness",
             Kind::Normal => "normal",
             Kind::Anisotropy => "anisotropy",
             Kind::Error => "error",
+            Kind::Conversion => "conversion",
+            Kind::Diffuse => "diffuse",
+            Kind::Albedo(j) => lobe(ALBEDOS, j),
+            Kind::Shape(j) => lobe(SHAPES, j),
+            Kind::Residual => "residual",
+            Kind::Normalisation => "normalisation",
         }
     }
 
-    /// Storages in order of preference: 8 bits for what is looked at, 16 for normals, floats where a container has nothing less.
+    /// As storage sees it.
+    #[must_use]
+    pub fn held(self) -> Held {
+        match self {
+            Kind::Roughness => Held::Roughness,
+            Kind::Normal => Held::Normal,
+            Kind::Anisotropy => Held::Anisotropy,
+            Kind::Error | Kind::Conversion | Kind::Residual => Held::Error,
+            Kind::Diffuse | Kind::Albedo(_) => Held::Albedo,
+            Kind::Shape(_) => Held::Shape,
+            Kind::Normalisation => Held::Table,
+        }
+    }
+}
+
+/// What maps of a kind hold, as their storage sees it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Held {
+    /// Roughness, and what is packed with it.
+    Roughness,
+    /// Fitted normals.
+    Normal,
+    /// Anisotropy.
+    Anisotropy,
+    /// Errors: few digits.
+    Error,
+    /// Albedos: from 0 on, some of them above 1.
+    Albedo,
+    /// Shapes of lobes: numbers between bounds that are told.
+    Shape,
+    /// A table that is read beside the maps.
+    Table,
+}
+
+impl Held {
+    /// Everything, in the order in which storages are written.
+    pub const ALL: [Held; 7] = [
+        Held::Roughness,
+        Held::Normal,
+        Held::Anisotropy,
+        Held::Error,
+        Held::Albedo,
+        Held::Shape,
+        Held::Table,
+    ];
+
+    /// The word of an output, as in `ktx2:shape=unorm16`.
+    #[must_use]
+    pub const fn id(self) -> &'static str {
+        match self {
+            Held::Roughness => "roughness",
+            Held::Normal => "normal",
+            Held::Anisotropy => "anisotropy",
+            Held::Error => "error",
+            Held::Albedo => "albedo",
+            Held::Shape => "shape",
+            Held::Table => "table",
+        }
+    }
+
+    /// Storages in order of preference: 8 bits for what is looked at, 16 for normals and lobes, floats where a container has nothing less.
     const fn usual(self) -> &'static [Storage] {
         match self {
-            Kind::Roughness | Kind::Anisotropy => &[Storage::Unorm8, Storage::Float],
-            Kind::Normal => &[Storage::Unorm16, Storage::Float],
-            Kind::Error => &[Storage::Half, Storage::Unorm8],
+            Held::Roughness | Held::Anisotropy => &[Storage::Unorm8, Storage::Float],
+            Held::Normal | Held::Shape => &[Storage::Unorm16, Storage::Float],
+            Held::Error => &[Storage::Half, Storage::Unorm8],
+            Held::Albedo => &[Storage::Half, Storage::Unorm16],
+            Held::Table => &[Storage::Float, Storage::Unorm16],
         }
+    }
+
+    /// The usual storage in a container.
+    fn usual_in(self, encoder: &dyn Encoder) -> Storage {
+        let taken = encoder.mip_storages();
+        let found = self.usual().iter().find(|s| taken.contains(s)).or(taken.first());
+        found.copied().unwrap_or(Storage::Float)
     }
 }
 
@@ -49,35 +139,18 @@ impl Kind {
 pub struct Output {
     /// The container: one of [`containers`].
     pub encoder: &'static dyn Encoder,
-    /// Storage of the roughness and of what is packed with it.
-    pub roughness: Storage,
-    /// Storage of normals.
-    pub normal: Storage,
-    /// Storage of anisotropy.
-    pub anisotropy: Storage,
-    /// Storage of errors.
-    pub error: Storage,
+    /// Storages in the order of [`Held::ALL`].
+    storages: [Storage; Held::ALL.len()],
 }
 
 impl Output {
     /// The usual storages of a container.
     #[must_use]
     pub fn new(encoder: &'static dyn Encoder) -> Output {
-        let usual = |kind: Kind| {
-            let taken = encoder.mip_storages();
-            let found = kind.usual().iter().find(|s| taken.contains(s)).or(taken.first());
-            found.copied().unwrap_or(Storage::Float)
-        };
-        Output {
-            encoder,
-            roughness: usual(Kind::Roughness),
-            normal: usual(Kind::Normal),
-            anisotropy: usual(Kind::Anisotropy),
-            error: usual(Kind::Error),
-        }
+        Output { encoder, storages: Held::ALL.map(|held| held.usual_in(encoder)) }
     }
 
-    /// Reads `container`, with `:kind=storage+kind=storage` behind it or not.
+    /// Reads `container`, with `:word=storage+word=storage` behind it or not.
     ///
     /// # Errors
     /// [`Fault`] for a word that is not known, or a storage that the container does not take.
@@ -88,60 +161,55 @@ impl Output {
         };
         let mut output = Output::new(encoder);
         for part in rest.into_iter().flat_map(|r| r.split('+')) {
-            let (kind, storage) = part.split_once('=').ok_or_else(|| Fault::Map {
+            let (held, storage) = part.split_once('=').ok_or_else(|| Fault::Map {
                 why: format!("`{part}` is not of the form `kind=storage`"),
                 allowed: Some("such as \"ktx2:roughness=bc4+normal=bc5\"".to_owned()),
                 remedy: None,
             })?;
-            output = output.with(kind, storage)?;
+            output = output.with(held, storage)?;
         }
         Ok(output)
     }
 
-    /// With another storage of a kind of map.
+    /// With another storage of what maps hold.
     ///
     /// # Errors
-    /// [`Fault::Word`] for a kind or storage that there is not.
-    pub fn with(mut self, kind: &str, storage: &str) -> Result<Output, Fault> {
-        let kinds = || Kind::ALL.iter().map(|k| k.id());
-        let kind = Kind::ALL.into_iter().find(|k| k.id() == kind);
-        let Some(kind) = kind else { return Err(unknown_word("kind of map", storage, kinds())) };
+    /// [`Fault::Word`] for a word or storage that there is not.
+    pub fn with(self, held: &str, storage: &str) -> Result<Output, Fault> {
+        let Some(found) = Held::ALL.into_iter().find(|h| h.id() == held) else {
+            return Err(unknown_word("kind of map", held, Held::ALL.iter().map(|h| h.id())));
+        };
         let taken = self.encoder.mip_storages();
         let Some(storage) = taken.iter().find(|s| s.id() == storage) else {
             let what = format!("{} storage of maps", self.encoder.id());
             return Err(unknown_word(&what, storage, taken.iter().map(|s| s.id())));
         };
-        *self.place(kind) = *storage;
-        Ok(self)
+        Ok(self.stored(found, *storage))
     }
 
-    fn place(&mut self, kind: Kind) -> &mut Storage {
-        match kind {
-            Kind::Roughness => &mut self.roughness,
-            Kind::Normal => &mut self.normal,
-            Kind::Anisotropy => &mut self.anisotropy,
-            Kind::Error => &mut self.error,
-        }
+    /// With another storage.
+    #[must_use]
+    pub fn stored(mut self, held: Held, storage: Storage) -> Output {
+        self.storages[held as usize] = storage;
+        self
     }
 
     /// The storage of a map.
     #[must_use]
     pub fn storage(&self, kind: Kind) -> Storage {
-        match kind {
-            Kind::Roughness => self.roughness,
-            Kind::Normal => self.normal,
-            Kind::Anisotropy => self.anisotropy,
-            Kind::Error => self.error,
-        }
+        self.storages[kind.held() as usize]
     }
 }
 
 impl std::fmt::Display for Output {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(self.encoder.id())?;
-        for (i, kind) in Kind::ALL.into_iter().enumerate() {
-            let between = if i == 0 { ':' } else { '+' };
-            write!(f, "{between}{}={}", kind.id(), self.storage(kind).id())?;
+        for (i, (held, storage)) in Held::ALL.into_iter().zip(self.storages).enumerate() {
+            // every output tells the first four, and of lobes what is not usual
+            if i < 4 || storage != held.usual_in(self.encoder) {
+                let between = if i == 0 { ':' } else { '+' };
+                write!(f, "{between}{}={}", held.id(), storage.id())?;
+            }
         }
         Ok(())
     }
@@ -159,18 +227,34 @@ impl MapRequest {
     /// The kinds of map that it writes.
     #[must_use]
     pub fn kinds(&self) -> Vec<Kind> {
-        let written = |kind: &Kind| match kind {
-            Kind::Roughness | Kind::Error => true,
-            Kind::Normal => self.filter.centre == Centre::Free,
-            Kind::Anisotropy => self.filter.shape == Shape::Anisotropic && self.filter.rule.anisotropic,
-        };
-        Kind::ALL.into_iter().filter(written).collect()
+        let mut out = Vec::new();
+        let mut put = |written: bool, kind: Kind| out.extend(written.then_some(kind));
+        put(self.sbrdf.is_none(), Kind::Roughness);
+        put(self.filter.centre == Centre::Free, Kind::Normal);
+        put(
+            self.filter.shape == Shape::Anisotropic && self.filter.rule.anisotropic && self.sbrdf.is_none(),
+            Kind::Anisotropy,
+        );
+        match &self.sbrdf {
+            None => put(true, Kind::Error),
+            Some(sbrdf) => {
+                put(true, Kind::Diffuse);
+                for j in 0..sbrdf.lobes.min(MOST_LOBES) {
+                    put(true, Kind::Albedo(j));
+                    put(true, Kind::Shape(j));
+                }
+                put(true, Kind::Residual);
+                put(true, Kind::Normalisation);
+            }
+        }
+        put(self.roughness.from().is_some(), Kind::Conversion);
+        out
     }
 
     /// Is the z of normals left to the shader? In an output of two channels it is, and then in all of them.
     #[must_use]
     pub fn drops_z(&self) -> bool {
-        self.outputs.iter().any(|o| mips::most_channels(o.normal) == 2)
+        self.outputs.iter().any(|o| mips::most_channels(o.storage(Kind::Normal)) == 2)
     }
 
     /// Channels of a map, where an image with so many is what the roughness is packed in.
@@ -178,18 +262,14 @@ impl MapRequest {
         match kind {
             Kind::Roughness => match (self.packing, &self.roughness) {
                 (Packing::Gltf, _) => 3,
-                (Packing::Image, RoughnessInput::Image { .. }) => image,
+                (Packing::Image, RoughnessInput::Image { .. }) if self.roughness.packs() => image,
                 _ => 1,
             },
-            Kind::Normal => {
-                if self.drops_z() {
-                    2
-                } else {
-                    3
-                }
-            }
-            Kind::Anisotropy => 3,
-            Kind::Error => 2,
+            Kind::Normal if self.drops_z() => 2,
+            Kind::Normal | Kind::Anisotropy | Kind::Diffuse | Kind::Normalisation => 3,
+            Kind::Error | Kind::Conversion | Kind::Residual => 2,
+            Kind::Albedo(_) => 3 + usize::from(self.sbrdf.as_ref().is_some_and(SbrdfRequest::constants)),
+            Kind::Shape(_) => 4,
         }
     }
 }
