@@ -73,3 +73,71 @@ fn what_is_no_image_is_told() {
     huge[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
     assert!(read_bytes(&huge).is_err());
 }
+
+/// Every kind of picture is filtered or refused: the file, the level and the texel are told, and nothing is written.
+#[test]
+fn pictures_of_all_kinds_are_filtered_or_refused() {
+    use brdfbake::cancel::Cancel;
+    use brdfbake::pipeline::Settings;
+    use brdfbake::pipeline::map::{Input, MapRequest, Output, RoughnessInput, run};
+    use png::{BitDepth, ColorType};
+    let dir = tempfile::tempdir().unwrap();
+    let save = |name: &str, bytes: &[u8]| {
+        let path = dir.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        path
+    };
+    let bake = |normal: Option<Input>, roughness: RoughnessInput| {
+        let out = dir.path().join("out");
+        let request = MapRequest::new("m", normal, roughness);
+        let request = MapRequest { outputs: vec![Output::parse("exr").unwrap()], check: 1, ..request };
+        let done = run(&request, &Settings::new(&out), &Cancel::new(), &|_, _| {}).map(|_| {
+            let file = brdfbake::encode::read::read_file(&out.join("m.roughness.exr")).unwrap();
+            file.channel("roughness").unwrap().values.clone()
+        });
+        let written = out.exists();
+        let _ = std::fs::remove_dir_all(&out);
+        assert_eq!(written, done.is_ok(), "something was written");
+        done.map_err(|e| e.to_string())
+    };
+    let number = || RoughnessInput::Constant(0.5);
+    // 16 bits: the last digit of one texel of a roughness is kept
+    let wide: Vec<u8> = [0x4000u16, 0x4001, 0x8000, 0xffff].iter().flat_map(|v| v.to_be_bytes()).collect();
+    let path = save("wide.png", &png([2, 2], ColorType::Grayscale, BitDepth::Sixteen, None, &wide));
+    let found = bake(None, RoughnessInput::new(path)).unwrap();
+    let expected = [0x4000, 0x4001, 0x8000, 0xffff].map(|v| f64::from(v) / 65535.0);
+    assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{found:?}");
+    // a palette is what its colours are
+    let palette = vec![255, 51, 0, 0, 204, 0];
+    let indexed = png([2, 1], ColorType::Indexed, BitDepth::One, Some(palette), &[0b0100_0000]);
+    let path = save("palette.png", &indexed);
+    let found = bake(None, RoughnessInput::new(path)).unwrap();
+    assert!((found[0] - 0.2).abs() < 1e-6 && (found[1] - 0.8).abs() < 1e-6, "{found:?}");
+    // truncated, in each of two places, as roughness and as normals
+    let whole = png([8, 8], ColorType::Rgb, BitDepth::Eight, None, &[140; 8 * 8 * 3]);
+    for cut in [30, whole.len() - 20] {
+        let path = save("cut.png", &whole[..cut]);
+        for refused in
+            [bake(None, RoughnessInput::new(path.clone())), bake(Some(Input::new(path.clone())), number())]
+        {
+            let message = refused.unwrap_err();
+            assert!(message.contains("cut.png: png:"), "{cut}: {message}");
+        }
+    }
+    // normals of no length, of which the first is told and the others are counted
+    let path = dir.path().join("none.exr");
+    let texel = |x, y| if (x, y) == (2, 1) || y == 3 { (0.0f32, 0.0f32, 0.0f32) } else { (0.0, 0.1, 0.9) };
+    exr::prelude::write_rgb_file(&path, 4, 4, texel).unwrap();
+    let message = bake(Some(Input { signed: true, ..Input::new(path) }), number()).unwrap_err();
+    let expected = "none.exr: level 0, texel (2, 1): the normal has no length; 4 more texels have faults";
+    assert!(message.contains(expected), "{message}");
+    // a roughness above 1, and one that is infinite
+    for (value, expected) in [(1.5, "roughness 1.5 outside [0, 1]"), (f32::INFINITY, "a value is not finite")]
+    {
+        let path = dir.path().join("over.exr");
+        let texel = |x, y| (0.0f32, if (x, y) == (1, 2) { value } else { 0.5 }, 0.0f32);
+        exr::prelude::write_rgb_file(&path, 3, 3, texel).unwrap();
+        let message = bake(None, RoughnessInput::new(path)).unwrap_err();
+        assert!(message.contains(&format!("over.exr: level 0, texel (1, 2): {expected}")), "{message}");
+    }
+}
