@@ -48,6 +48,8 @@ cites! {
     CHIANG_2016 = "Chiang2016", "Chiang, Kutz, Burley: Practical and Controllable Subsurface Scattering for Production Path Tracing, SIGGRAPH talks", 2016, "https://doi.org/10.1145/2897839.2927433";
     /// Christensen and Burley, normalised diffusion.
     CHRISTENSEN_BURLEY_2015 = "ChristensenBurley2015", "Christensen, Burley: Approximate Reflectance Profiles for Efficient Subsurface Scattering, Pixar memo 15-04", 2015, "https://graphics.pixar.com/library/ApproxBSSRDF/";
+    /// The standard observers of the CIE.
+    CIE_11664_1 = "CIE11664-1", "ISO/CIE 11664-1: Colorimetry, part 1: CIE standard colorimetric observers; data set CIE_xyz_1931_2deg", 2019, "https://doi.org/10.25039/CIE.DS.xvudnb9b";
     /// The standard illuminants of the CIE.
     CIE_11664_2 = "CIE11664-2", "ISO/CIE 11664-2: Colorimetry, part 2: CIE standard illuminants", 2022, "https://cie.co.at/publications/colorimetry-part-2-cie-standard-illuminants-0";
     /// Cook and Torrance, the first microfacet model of graphics.

@@ -217,8 +217,10 @@ pub(crate) const PUBLISHED_FIT_ALBEDO: f64 = 1e-4;
 pub(crate) const PUBLISHED_FIT_INVERSE: f64 = 1e-7;
 /// Colours of metals as renderers publish them, of other measurements and spaces.
 pub(crate) const COLOUR: f64 = 0.1;
-/// The white of a colour space whose matching functions are fitted.
-pub(crate) const COLOUR_WHITE: f64 = 5e-3;
+/// Areas below the colour-matching functions of the CIE, which are equal but for the digits of their rows.
+pub(crate) const CIE_AREAS: f64 = 4e-4;
+/// The white of a colour space whose matrix has seven digits.
+pub(crate) const COLOUR_WHITE: f64 = 1e-5;
 /// Tables of Cycles: floats in print, made by sampling.
 pub(crate) const CYCLES_FLOAT_TABLE: f64 = 1e-4;
 /// Mean of a table of Cycles, made by sampling, against the sum that is known of it.

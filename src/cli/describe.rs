@@ -240,7 +240,8 @@ fn params(params: &[Param]) -> String {
                     Preset::Value(v) => exact(v),
                     Preset::Of(id) => id.to_owned(),
                 };
-                format!("{}, default {default}", interval([min, max]))
+                let list = if p.coloured { ", or a list of three: red, green, blue" } else { "" };
+                format!("{}{list}, default {default}", interval([min, max]))
             }
             Kind::Choice(words) => format!("{}; default {}", words.join(" | "), words.first().unwrap_or(&"")),
             Kind::Rows { columns, preset } => {

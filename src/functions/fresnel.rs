@@ -238,6 +238,31 @@ pub static ALL: &[FunctionInfo] = &[
         },
     },
     FunctionInfo {
+        id: "f82-tint-conductor",
+        title: "F82 tint from the index of a metal",
+        formula: "F(1/7) / (F0 + (1 - F0)(6/7)^5)",
+        sources: &[(cite::KUTZ_2021, "section 2.3")],
+        params: &[N, K],
+        inputs: &[],
+        unit: "1",
+        range: [0.0, 2.0],
+        notes: "With f0-conductor the two colours of `fresnel-f82-tint`. Above 1 where the material reflects more than Schlick's curve.",
+        also: &[],
+        known: &[known(
+            &[("n", "0.43"), ("k", "2.455")],
+            NO_ANGLES,
+            0.993_370_329_153_847_28,
+            1e-13,
+            "formula in 50-digit arithmetic",
+        )],
+        eval: |p, _| {
+            let f = |cos: f64| -> Result<f64, ParamError> {
+                Ok(fresnel::conductor(cos, p.number("n")?, p.number("k")?).unpolarised())
+            };
+            Ok(schlick::tint_of(f(1.0)?, f(schlick::MU_82)?))
+        },
+    },
+    FunctionInfo {
         id: "fresnel-lazanyi",
         title: "Schlick's factor corrected for metals",
         formula: "F0 + (1 - F0)(1 - c)^5 - a c (1 - c)^q, F0 = ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2)",

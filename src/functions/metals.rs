@@ -4,6 +4,7 @@ use super::{FunctionError, FunctionInfo, NO_ANGLES, known, measured};
 use crate::cite;
 use crate::models::{Param, Params};
 use crate::terms::metals::{self, Metal};
+use crate::terms::{fresnel, schlick};
 
 const METAL: Param =
     Param::choice("metal", "symbol of the element", &["au", "ag", "al", "cu", "fe", "ni", "ti", "w"]);
@@ -19,6 +20,11 @@ const SOURCES: &[(cite::Cite, &str)] = &[
 fn metal(params: &Params, function: &'static str) -> Result<&'static Metal, FunctionError> {
     metals::find(params.choice("metal")?)
         .ok_or(FunctionError::Undefined { function, why: "no such metal has been measured here" })
+}
+
+fn tint(n: f64, k: f64) -> f64 {
+    let f = |mu: f64| fresnel::conductor(mu, n, k).unpolarised();
+    schlick::tint_of(f(1.0), f(schlick::MU_82))
 }
 
 /// The family.
@@ -80,6 +86,36 @@ pub static ALL: &[FunctionInfo] = &[
         eval: |p, _| Ok(metal(p, "metal-f0")?.f0(p.number("lambda_nm")?)),
     },
     FunctionInfo {
+        id: "metal-f82-tint",
+        title: "F82 tint of a measured metal",
+        formula: "F(1/7) / (F0 + (1 - F0)(6/7)^5)",
+        sources: &[
+            (cite::KUTZ_2021, "section 2.3"),
+            (cite::JOHNSON_CHRISTY_1972, "Table I (Au, Ag, Cu)"),
+            (cite::JOHNSON_CHRISTY_1974, "Table I (Fe, Ni, Ti)"),
+            (cite::RAKIC_1995, "Table 2 (Al, number recalled)"),
+            (cite::RAKIC_1998, "the Brendel-Bormann fit (W)"),
+            (cite::POLYANSKIY_2024, "the transcription of all rows"),
+        ],
+        params: &[METAL, WAVELENGTH],
+        inputs: &[],
+        unit: "1",
+        range: [0.0, 2.0],
+        notes: "What OpenPBR calls the specular colour of a metal. At one wavelength; 650, 550 and 450 nm are red, green and blue.",
+        also: &[],
+        known: &[known(
+            &[("metal", "\"au\""), ("lambda_nm", "548.6")],
+            NO_ANGLES,
+            0.993_370_329_153_847_28,
+            1e-13,
+            "formula in 50-digit arithmetic, at a row of the source",
+        )],
+        eval: |p, _| {
+            let (n, k) = metal(p, "metal-f82-tint")?.index(p.number("lambda_nm")?);
+            Ok(tint(n, k))
+        },
+    },
+    FunctionInfo {
         id: "metal-f0-srgb",
         title: "Colour of a measured metal at normal incidence, linear sRGB under D65",
         formula: "M int F0 S (x, y, z) d lambda over that of a perfect mirror, channel by channel",
@@ -88,12 +124,12 @@ pub static ALL: &[FunctionInfo] = &[
         inputs: &[],
         unit: "1",
         range: [0.0, 1.2],
-        notes: "S is D65, the eye is the fit of Wyman and others. Not clamped: gold and copper leave the gamut a little.",
+        notes: "S is D65, the eye the CIE 1931 observer. Not clamped: gold and copper leave the gamut a little.",
         also: &[],
         known: &[known(
             &[("metal", "\"au\""), ("channel", "\"G\"")],
             NO_ANGLES,
-            0.729_528_625_928_812_6,
+            0.728_354_447_847_513_8,
             1e-12,
             "the same sums over the same rows in another program",
         )],

@@ -2,7 +2,7 @@
 //!
 //! Recipe: `model = "beckmann-conductor"`, `params = { eta = 0.2, k = 3.9 }` (one wavelength; a colour is three bakes).
 
-use super::microfacet::{self, ALPHA, ALPHA_X, ALPHA_Y, Beckmann, ETA_CONDUCTOR, Fresnel, K, MASKING};
+use super::microfacet::{self, ALPHA, ALPHA_X, ALPHA_Y, Beckmann, ETA_CONDUCTOR, K, MASKING, OUTSIDE};
 use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
 use crate::cite;
 
@@ -10,15 +10,15 @@ use crate::cite;
 pub static INFO: ModelInfo = ModelInfo {
     id: "beckmann-conductor",
     title: "Beckmann reflection off a metal, exact Fresnel",
-    formula: "f = F(wo.wh, eta + i k) D(wh) G2(wo, wi) / (4 mu_o mu_i)",
+    formula: "f = F(wo.wh, (eta + i k) / outside) D(wh) G2(wo, wi) / (4 mu_o mu_i)",
     sources: &[
         (cite::WALTER_2007, "Eq. 25 (D), 26 (G1), 20 (f)"),
         (cite::HEITZ_2014, "Eq. 99 (correlated G2)"),
         (cite::BORN_WOLF_1999, "section 14.2 (F)"),
     ],
-    params: &[ALPHA, ALPHA_X, ALPHA_Y, ETA_CONDUCTOR, K, MASKING],
+    params: &[ALPHA, ALPHA_X, ALPHA_Y, ETA_CONDUCTOR, K, OUTSIDE, MASKING],
     laws: Laws { reciprocal: true, passive: true, isotropic: false },
-    notes: "k = 0 is the dielectric. Time factor exp(-i w t), so the index is eta + i k with k >= 0.",
+    notes: "k = 0 is the dielectric. Under a coat: outside is its index. Time factor exp(-i w t), so the index is eta + i k with k >= 0.",
     also: ALSO,
     known: KNOWN,
     splits: false,
@@ -26,8 +26,7 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
-    let fresnel = Fresnel::Conductor { eta: params.number("eta")?, k: params.number("k")? };
-    microfacet::build(INFO.id, params, Beckmann::new, fresnel)
+    microfacet::build(INFO.id, params, Beckmann::new, microfacet::conductor(params)?)
 }
 
 const ALSO: &[Alias] = &[];

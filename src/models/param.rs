@@ -23,6 +23,8 @@ pub struct Param {
     pub spelled: &'static [&'static str],
     /// How an axis runs over it by default, in the place of the roughness that the model does not have.
     pub sweep: Option<Sweep>,
+    /// A number that may differ between red, green and blue: a list of three is one too.
+    pub coloured: bool,
     /// A number in a range, or one of a few words.
     pub kind: Kind,
 }
@@ -99,6 +101,7 @@ impl Param {
             also: &[],
             spelled: &[],
             sweep: None,
+            coloured: false,
             kind: Kind::Number { min: range[0], max: range[1], preset },
         }
     }
@@ -114,6 +117,7 @@ impl Param {
             also: &[],
             spelled: &[],
             sweep: None,
+            coloured: false,
             kind: Kind::Choice(words),
         }
     }
@@ -134,6 +138,7 @@ impl Param {
             also: &[],
             spelled: &[],
             sweep: None,
+            coloured: false,
             kind: Kind::Rows { columns, preset },
         }
     }
@@ -163,6 +168,12 @@ impl Param {
     #[must_use]
     pub const fn also(mut self, names: &'static [&'static str]) -> Param {
         self.also = names;
+        self
+    }
+    /// The same parameter, of which a list of three gives red, green and blue.
+    #[must_use]
+    pub const fn coloured(mut self) -> Param {
+        self.coloured = true;
         self
     }
     /// The same parameter with spellings that no axis goes by.

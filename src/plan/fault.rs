@@ -234,6 +234,16 @@ pub enum Fault {
         /// Is it the system that cannot?
         io: bool,
     },
+    /// A file of n and k that cannot be read.
+    #[error("{}: {why}", show(file))]
+    Index {
+        /// The file.
+        file: String,
+        /// Why not.
+        why: String,
+        /// Is it the system that cannot?
+        io: bool,
+    },
     /// The table cannot be bound.
     #[error("{}", bind_message(.0))]
     Bind(BindError),
@@ -309,8 +319,11 @@ impl Fault {
             }
             Fault::NoValue { .. } => "move the axis off that end, or take another model",
             Fault::Map { remedy, .. } => (*remedy)?,
-            Fault::Image { io: true, .. } => "paths are relative to the folder of the recipe",
+            Fault::Image { io: true, .. } | Fault::Index { io: true, .. } => {
+                "paths are relative to the folder of the recipe"
+            }
             Fault::Image { io: false, .. } => "take a PNG, JPEG, EXR, KTX2, DDS or HDR image",
+            Fault::Index { .. } => "take a CSV or a tabulated YAML of refractiveindex.info",
             Fault::Bind(e) => bind_remedy(e)?,
             _ => return None,
         };

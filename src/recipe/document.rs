@@ -4,11 +4,12 @@
 //! [`Origins`] leads from a place in the requests back to the one in the file.
 
 use super::section::{Section, wrong};
-use super::{read_axis, read_map, read_size};
+use super::{index_file, read_axis, read_map, read_size};
 use crate::grid::Axis;
 use crate::grid::fit::Texels;
 use crate::grid::provenance::Waiver;
 use crate::math::shown::show;
+use crate::models::Kind;
 use crate::plan::fault::{Fault, unknown_word};
 use crate::plan::faults::Faults;
 use crate::plan::map::MapDraft;
@@ -16,6 +17,7 @@ use crate::plan::request::{Draft, Holes};
 use crate::plan::resolve::check_count;
 use crate::plan::{MAX_TABLES, Output, Part, Path, Place, Sizing, Step, TableRequest};
 use crate::tables::driver::OnMiss;
+use crate::tables::metal::NK_COLUMNS;
 use crate::tables::spec::Request;
 use serde_json::{Map, Value as Json};
 use std::path::Path as File;
@@ -126,7 +128,7 @@ pub(super) fn read(root: &DeTable<'_>, folder: &File, faults: &mut Faults) -> Do
         document.origins.maps.push(path);
     }
     for (path, table) in tables.into_iter().flatten().take(MAX_TABLES) {
-        let (draft, origin) = entry(table, path, faults);
+        let (draft, origin) = entry(table, path, folder, faults);
         document.drafts.push(draft);
         document.origins.tables.push(origin);
     }
@@ -169,7 +171,7 @@ fn number(path: &Path) -> usize {
     }
 }
 
-fn entry(table: &DeTable<'_>, path: Path, faults: &mut Faults) -> (Draft, Origin) {
+fn entry(table: &DeTable<'_>, path: Path, folder: &File, faults: &mut Faults) -> (Draft, Origin) {
     let section = Section::new(table, &path, "[[table]]", TABLE, faults);
     section.require("kind", "kind = \"dfg\"", faults);
     section.require("name", "name = \"ggx-dfg\"", faults);
@@ -197,6 +199,8 @@ fn entry(table: &DeTable<'_>, path: Path, faults: &mut Faults) -> (Draft, Origin
     });
     let (numbers, waivers, _) = left(waivers(&section, faults));
     kept("waive", numbers);
+    let mut params = params(&section, faults);
+    files(&mut params, kind.as_deref(), folder, &section, faults);
     let request = TableRequest {
         name: name.unwrap_or_default(),
         file: section.text("file", faults),
@@ -207,7 +211,7 @@ fn entry(table: &DeTable<'_>, path: Path, faults: &mut Faults) -> (Draft, Origin
             layout: section.text("layout", faults),
             channels,
             model: section.text("model", faults),
-            params: params(&section, faults),
+            params,
             axes,
         },
         tolerance: section.number("tolerance", faults),
@@ -254,6 +258,31 @@ fn params(section: &Section<'_>, faults: &mut Faults) -> Map<String, Json> {
         }
     }
     params
+}
+
+/// Rows of an index in the place of the name of their file.
+fn files(
+    params: &mut Map<String, Json>,
+    kind: Option<&str>,
+    folder: &File,
+    section: &Section<'_>,
+    faults: &mut Faults,
+) {
+    let declared = kind.and_then(crate::tables::find).map_or(&[][..], |kind| kind.params);
+    for param in declared {
+        let index = matches!(param.kind, Kind::Rows { columns, .. } if columns == NK_COLUMNS);
+        let Some(file) = params.get(param.id).and_then(Json::as_str).filter(|_| index) else { continue };
+        match index_file::load(&folder.join(file)) {
+            Ok(rows) => {
+                params.insert(param.id.to_owned(), rows.iter().map(|r| Json::from(r.as_slice())).collect());
+            }
+            Err(index_file::Reason { why, io }) => {
+                let fault = Fault::Index { file: file.to_owned(), why, io };
+                faults.value(section.path("params").key(param.id), fault);
+                params.remove(param.id);
+            }
+        }
+    }
 }
 
 fn channels(section: &Section<'_>, faults: &mut Faults) -> Option<Numbered<String>> {

@@ -113,6 +113,7 @@ mod diagnostic;
 mod document;
 mod engine;
 mod engines;
+mod index_file;
 mod load;
 mod preset;
 mod read_axis;
@@ -139,7 +140,7 @@ use std::path::Path;
 /// Most bytes of a recipe file.
 pub const MAX_BYTES: usize = 1 << 20;
 
-/// Reads a recipe. `file_name` is that of messages; the images of maps are found from its folder on.
+/// Reads a recipe. `file_name` is that of messages; the images of maps and the indices of metals are found from its folder on.
 ///
 /// # Errors
 /// [`RecipeError`] with every fault of the text.

@@ -102,10 +102,15 @@ fn warp_table(table: &DeTable<'_>, path: &Path, faults: &mut Faults) -> Option<W
     None
 }
 
-/// A value of `params`: a number, a word, or rows of numbers, as JSON.
+/// A value of `params`: a number, a word, numbers, or rows of numbers, as JSON.
 pub(super) fn param(value: &DeValue<'_>) -> Option<serde_json::Value> {
     match value {
         DeValue::String(s) => Some(serde_json::Value::from(s.as_ref())),
+        DeValue::Array(cells)
+            if !cells.is_empty() && cells.iter().all(|c| as_number(c.get_ref()).is_some()) =>
+        {
+            numbers(value)
+        }
         DeValue::Array(rows) if rows.iter().all(|row| row.get_ref().as_array().is_some()) => {
             rows.iter().map(|row| numbers(row.get_ref())).collect()
         }

@@ -10,7 +10,7 @@ use crate::cite;
 use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
 use crate::models::{Param, Preset};
-use crate::terms::blackbody::{planck, wyman_xyz};
+use crate::terms::blackbody::planck;
 
 const fn colour(id: &'static str, meaning: &'static str, glow: Glow, band: Band) -> ChannelInfo {
     let range = match glow {
@@ -28,7 +28,8 @@ pub static INFO: TableInfo = TableInfo {
     formula: "int B(lambda, T) (x, y, z) dlambda to linear sRGB, divided by its Y; B = 2 h c^2 / lambda^5 / (exp(h c / (lambda k T)) - 1)",
     sources: &[
         Source::new(cite::PLANCK_1901, "with the exact SI constants of 2019"),
-        Source::new(cite::WYMAN_2013, "Eq. 4"),
+        Source::new(cite::WYMAN_2013, "Eq. 4").when("eye", &["wyman-2013"]),
+        Source::new(cite::CIE_11664_1, "Table 1").when("eye", &["cie-1931"]),
         Source::new(cite::LINDBLOOM, "XYZ to sRGB (D65)"),
     ],
     coordinates: &["temperature"],
@@ -63,21 +64,28 @@ pub static INFO: TableInfo = TableInfo {
     ],
     mix: Mix::Layouts,
     model: ModelUse::None,
-    params: &[Param {
-        unit: "K",
-        ..Param::number(
-            "reference",
-            "T_0",
-            "of layout light: temperature of luminance 1",
-            [500.0, 1e6],
-            Preset::Value(2000.0),
-        )
-    }],
+    params: &[
+        Param {
+            unit: "K",
+            ..Param::number(
+                "reference",
+                "T_0",
+                "of layout light: temperature of luminance 1",
+                [500.0, 1e6],
+                Preset::Value(2000.0),
+            )
+        },
+        Param::choice(
+            "eye",
+            "colour-matching functions: the fit of Wyman and others, or the standard observer itself",
+            &["wyman-2013", "cie-1931"],
+        ),
+    ],
     laws: &["range", "honest"],
     axes: default_axes,
     least_tolerance: |_| 0.0,
     blended: true,
-    notes: "Fire is 1000 to 2000 K, a lamp 2856, daylight about 6500. Below 800 K the fit of the eye in the far red decides the hue.",
+    notes: "The fit is off in the far red: in red by 0.55 at 800 K, 0.29 at 1000 K, 0.046 at 2000 K, 0.0032 at 6500 K; eye = \"cie-1931\" is not. Fire is 1000 to 2000 K, a lamp 2856, daylight about 6500. Below 800 K the fit of the eye in the far red decides the hue.",
     bind,
 };
 
@@ -105,23 +113,25 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         Role::BlackBody(glow, _) => Some(glow),
         _ => None,
     })?;
+    let spectrum =
+        if spec.params.choice("eye")? == "cie-1931" { spectrum::plain() } else { spectrum::fitted() };
     Ok(Box::new(Table {
         temperature: spec.coordinate("temperature")?,
         glow: glows.first().copied().unwrap_or(Glow::Hue),
-        reference: luminance(spec.params.number("reference")?),
-        spectrum: spectrum::plain(),
+        reference: luminance(spectrum, spec.params.number("reference")?),
+        spectrum,
     }))
 }
 
-/// `int B y dlambda`, W/(sr m²) with lambda in nm as everywhere here, by the highest order of the spectrum's rules.
-fn luminance(temperature: f64) -> f64 {
-    spectrum::plain().integral(&mut |lambda| planck(lambda, temperature) * wyman_xyz(lambda)[1])
+/// `int B y dlambda`, W/(sr m²) with lambda in nm as everywhere here.
+fn luminance(spectrum: &Spectrum, temperature: f64) -> f64 {
+    spectrum.luminance(&mut |lambda| planck(lambda, temperature))
 }
 
 impl Baker for Table {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
         let temperature = at[self.temperature];
-        let y = luminance(temperature);
+        let y = luminance(self.spectrum, temperature);
         let factor = if self.glow == Glow::Light { y / self.reference } else { 1.0 };
         let mut e =
             self.spectrum.colour(tolerance / factor.max(1.0), &mut |lambda| planck(lambda, temperature) / y);

@@ -28,6 +28,7 @@ pub mod ltc_matrix;
 pub mod masking;
 mod memo;
 pub mod merl;
+pub mod metal;
 pub mod ndf;
 mod parts;
 pub mod phase_function;

@@ -140,6 +140,8 @@ pub enum Role {
     Dielectric(Polarisation, Side),
     /// A Fresnel factor of a metal at a wavelength.
     Metal(Polarisation, Band),
+    /// The F82-tint curve through a Fresnel factor of a metal.
+    MetalTint(Band),
     /// The colour of a metal in daylight.
     MetalColour(Band),
     /// A Fresnel factor in closed form, clamped or not.
@@ -267,7 +269,9 @@ impl Role {
             Role::Value(..) => "value",
             Role::Direction(..) => "direction",
             Role::DirectionDensity(_) => "density",
-            Role::Dielectric(..) | Role::Metal(..) | Role::FresnelForm { .. } => "Fresnel factor",
+            Role::Dielectric(..) | Role::Metal(..) | Role::MetalTint(_) | Role::FresnelForm { .. } => {
+                "Fresnel factor"
+            }
             Role::MetalColour(_) | Role::FilmColour(_) | Role::FilmSeries(_) | Role::BlackBody(..) => {
                 "colour"
             }

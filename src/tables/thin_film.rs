@@ -1,6 +1,7 @@
 //! Iridescence: the colour of a surface under a thin film, over angle and thickness of the film.
 
 use super::default_axes::axis;
+use super::metal::{ETA, Index, NK};
 use super::role::Band;
 use super::spectrum::{self, Spectrum};
 use super::{
@@ -9,7 +10,8 @@ use super::{
 use crate::cite;
 use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
-use crate::models::{Param, Preset};
+use crate::models::{Param, Params, Preset};
+use crate::terms::metals;
 use crate::terms::thin_film::{self, Film};
 
 const fn colour(id: &'static str, meaning: &'static str, role: Role) -> ChannelInfo {
@@ -31,7 +33,7 @@ pub static INFO: TableInfo = TableInfo {
         Source::new(cite::BELCOUR_BARLA_2017, "Eq. 6 to 10 (series; numbers recalled)")
             .of(|role| matches!(role, Role::FilmSeries(_))),
         Source::new(cite::BORN_WOLF_1999, "section 7.6.1"),
-        Source::new(cite::WYMAN_2013, "Eq. 4").of(is_daylight),
+        Source::new(cite::CIE_11664_1, "Table 1, CIE 1931 observer").of(is_daylight),
         Source::new(cite::CIE_11664_2, "Table B.1, D65").of(is_daylight),
     ],
     coordinates: &["mu", "film"],
@@ -58,16 +60,26 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Layouts,
     model: ModelUse::None,
     params: &[
+        Param::choice(
+            "metal",
+            "below the film: `index`, n3 and k3 as given; a measured metal; or `rows`, those of `nk`",
+            &["index", "au", "ag", "al", "cu", "fe", "ni", "ti", "w", "rows"],
+        ),
         Param::number("n2", "n_2", "index of the film", [1.0, 10.0], Preset::Value(1.33)),
-        Param::number("n3", "n_3", "index below the film, real part", [0.0, 1e5], Preset::Value(1.5)),
-        Param::number("k3", "k_3", "extinction coefficient below the film", [0.0, 100.0], Preset::Value(0.0)),
+        Param::number("n3", "n_3", "index below the film, real part", [0.0, 1e5], Preset::Value(1.5))
+            .coloured(),
+        Param::number("k3", "k_3", "extinction coefficient below the film", [0.0, 100.0], Preset::Value(0.0))
+            .coloured(),
         Param::number("orders", "m", "of layout series: orders summed", [1.0, 100.0], Preset::Value(2.0)),
+        ETA,
+        NK,
     ],
     laws: &["range", "honest"],
     axes: default_axes,
     least_tolerance: |_| 0.0,
     blended: true,
-    notes: "Vacuum above, thickness in nm. Colours may leave [0, 1] a little: renderers clamp. Defaults: water on glass; soap n2 1.33 n3 1; \
+    notes: "Vacuum above unless eta says otherwise, thickness in nm. Over a metal: metal = \"al\"; layout series reads its index at 650, 550 and 450 nm, a film for \
+        each colour, as it does lists of three for n3 and k3. Colours may leave [0, 1] a little: renderers clamp. Defaults: water on glass; soap n2 1.33 n3 1; \
         oil on water n2 1.5 n3 1.33; anodised titanium n2 2.5 n3 2.5 k3 3.4. Fringes of films above 2 um are finer than most grids.",
     bind,
 };
@@ -80,51 +92,76 @@ fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
 struct Table {
     mu: usize,
     film: usize,
-    /// Axes of the indices, where they are swept.
-    n2: Option<usize>,
-    n3: Option<usize>,
-    substrate: Film,
+    /// Axes of the indices, where they are swept: n2, n3, eta.
+    axes: [Option<usize>; 3],
+    n2: f64,
+    eta: f64,
+    params: Params,
     /// Of the series; none integrates the spectrum.
     orders: Option<u32>,
-    spectrum: &'static Spectrum,
+    /// Split at the rows of a metal.
+    own: Option<Spectrum>,
 }
 
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in [1, 100]")]
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
-    let [n2, n3, k3] = spec.params.numbers(["n2", "n3", "k3"])?;
-    let orders = spec.params.number("orders")?;
-    if n3 + k3 <= 0.0 && spec.axis("n3").is_none() {
+    let [n2, orders, eta] = spec.params.numbers(["n2", "orders", "eta"])?;
+    let index = Index::of(&spec.params, ["n3", "k3"])?;
+    if let Index::Given { n, k } = index
+        && n.iter().zip(k).any(|(n, k)| n + k <= 0.0)
+        && spec.axis("n3").is_none()
+    {
         let why = "n3 and k3 are both 0: nothing can be".to_owned();
         return Err(crate::models::ParamError::Together { model: spec.kind.id, why }.into());
     }
     let series = spec.roles().iter().any(|role| matches!(role, Role::FilmSeries(_)));
+    if series {
+        let [red, _, blue] = metals::RGB_NM;
+        index.covers(spec.kind.id, [blue, red])?;
+    } else {
+        index.spectral(spec.kind.id)?;
+    }
+    let kinks = index.kinks();
     Ok(Box::new(Table {
         mu: spec.coordinate("mu")?,
         film: spec.coordinate("film")?,
-        n2: spec.axis("n2"),
-        n3: spec.axis("n3"),
-        substrate: Film { n2, n3, k3, d_nm: 0.0 },
+        axes: [spec.axis("n2"), spec.axis("n3"), spec.axis("eta")],
+        n2,
+        eta,
+        params: spec.params.clone(),
         orders: series.then(|| orders.round() as u32),
-        spectrum: spectrum::daylight(),
+        own: (!series && !kinks.is_empty()).then(|| spectrum::daylight_with(kinks)),
     }))
+}
+
+impl Table {
+    /// The film at a wavelength, or of a colour, in the indices relative to what lies above: it is thicker by that index.
+    fn film(&self, index: &Index<'_>, at: &[f64], colour: usize, lambda_nm: f64) -> Film {
+        let swept = |i: usize, fixed: f64| self.axes[i].map_or(fixed, |axis| at[axis]);
+        let (n, k) = index.at(colour, lambda_nm);
+        let n = if matches!(index, Index::Given { .. }) { swept(1, n) } else { n };
+        let eta = swept(2, self.eta);
+        Film { n2: swept(0, self.n2) / eta, n3: n / eta, k3: k / eta, d_nm: at[self.film] * eta }
+    }
 }
 
 impl Baker for Table {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
-        let swept = |axis: Option<usize>, fixed: f64| axis.map_or(fixed, |i| at[i]);
-        let (n2, n3) = (swept(self.n2, self.substrate.n2), swept(self.n3, self.substrate.n3));
-        let film = Film { n2, n3, d_nm: at[self.film], ..self.substrate };
-        let mu = at[self.mu];
+        let (index, mu) = (Index::of(&self.params, ["n3", "k3"])?, at[self.mu]);
         if let Some(orders) = self.orders {
             let mut value = [0.0; MAX_CHANNELS];
-            value[..3].copy_from_slice(&thin_film::rgb(&film, mu, orders));
+            for (colour, v) in value.iter_mut().enumerate().take(3) {
+                let film = self.film(&index, at, colour, metals::RGB_NM[colour]);
+                *v = thin_film::rgb(&film, mu, orders)[colour];
+            }
             return super::closed_form(value, 3);
         }
-        let airy = &mut |lambda| thin_film::airy(&film, mu, lambda).unpolarised();
-        super::finite(self.spectrum.colour(tolerance, airy), 3)
+        let airy = &mut |lambda| thin_film::airy(&self.film(&index, at, 0, lambda), mu, lambda).unpolarised();
+        let spectrum = self.own.as_ref().unwrap_or_else(|| spectrum::daylight());
+        super::finite(spectrum.colour(tolerance, airy), 3)
     }
 
     fn rule(&self) -> String {
-        if self.orders.is_some() { "closed form" } else { spectrum::RULE }.to_owned()
+        if self.orders.is_some() { "closed form" } else { spectrum::DAYLIGHT_RULE }.to_owned()
     }
 }

@@ -4,7 +4,8 @@
 //! [Polyanskiy2024](crate::cite::POLYANSKIY_2024). Between rows n and k are interpolated linearly in wavelength, which is
 //! no better than the spacing of the rows (20 to 40 nm). Evaporated films at room temperature; real surfaces are darker.
 
-use super::blackbody::{wyman_xyz, xyz_to_srgb};
+use super::blackbody::xyz_to_srgb;
+use super::colour::{cie_xyz, d65};
 use super::lazanyi;
 use crate::cite::{self, Cite};
 
@@ -42,20 +43,28 @@ pub fn find(id: &str) -> Option<&'static Metal> {
     METALS.iter().find(|m| m.id == id)
 }
 
+/// (n, k) at a wavelength, linear between rows of wavelength, n, k in rising order; the end rows continue beyond them.
+///
+/// NaN without rows.
+#[must_use]
+pub fn index(rows: &[impl AsRef<[f64]>], lambda_nm: f64) -> (f64, f64) {
+    let row = |i: usize| rows[i].as_ref();
+    match rows.iter().position(|r| r.as_ref()[0] >= lambda_nm) {
+        Some(0) => (row(0)[1], row(0)[2]),
+        Some(i) => {
+            let (a, b) = (row(i - 1), row(i));
+            let t = (lambda_nm - a[0]) / (b[0] - a[0]);
+            (a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2]))
+        }
+        None => rows.last().map_or((f64::NAN, f64::NAN), |r| (r.as_ref()[1], r.as_ref()[2])),
+    }
+}
+
 impl Metal {
     /// (n, k) at a wavelength, linear between the rows; the end rows continue beyond them.
     #[must_use]
     pub fn index(&self, lambda_nm: f64) -> (f64, f64) {
-        let above = self.rows.iter().position(|r| r[0] >= lambda_nm);
-        match above {
-            Some(0) => (self.rows[0][1], self.rows[0][2]),
-            Some(i) => {
-                let (a, b) = (self.rows[i - 1], self.rows[i]);
-                let t = (lambda_nm - a[0]) / (b[0] - a[0]);
-                (a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2]))
-            }
-            None => self.rows.last().map_or((f64::NAN, f64::NAN), |r| (r[1], r[2])),
-        }
+        index(self.rows, lambda_nm)
     }
 
     /// Reflectance at normal incidence in vacuum.
@@ -74,10 +83,10 @@ impl Metal {
     /// Reflectance at normal incidence as linear sRGB under D65, a perfect mirror being (1, 1, 1).
     ///
     /// `RGB = M ∫ F0 S (x, y, z) dλ` over that of the mirror, channel by channel; S is D65 in steps of 10 nm, the eye is
-    /// [`wyman_xyz`], 360 to 830 nm by the trapezium rule in steps of 1 nm.
-    /// Source: [CIE11664-2](crate::cite::CIE_11664_2) Table B.1 (S), [Wyman2013](crate::cite::WYMAN_2013) Eq. 4.
+    /// [`cie_xyz`], 360 to 830 nm by the trapezium rule in steps of 1 nm.
+    /// Source: [CIE11664-2](crate::cite::CIE_11664_2) Table B.1 (S), [CIE11664-1](crate::cite::CIE_11664_1) Table 1.
     /// Range: about [0, 1.1]; not clamped, since gold and copper leave the gamut of sRGB a little.
-    /// Accuracy: 0.01, from the fit of the eye and the spacing of the rows.
+    /// Accuracy: that of the rows, which are 20 to 40 nm apart.
     #[must_use]
     pub fn f0_srgb(&self) -> [f64; 3] {
         let colour = |f: &dyn Fn(f64) -> f64| {
@@ -86,7 +95,7 @@ impl Metal {
                 let lambda = 360.0 + f64::from(i);
                 let end = if i == 0 || i == 470 { 0.5 } else { 1.0 };
                 let light = end * f(lambda) * d65(lambda);
-                for (sum, eye) in xyz.iter_mut().zip(wyman_xyz(lambda)) {
+                for (sum, eye) in xyz.iter_mut().zip(cie_xyz(lambda)) {
                     *sum += light * eye;
                 }
             }
@@ -96,30 +105,6 @@ impl Metal {
         [metal[0] / white[0], metal[1] / white[1], metal[2] / white[2]]
     }
 }
-
-/// Relative power of D65, 100 at 560 nm; linear between steps of 10 nm from 360 to 830 nm, 0 outside.
-///
-/// Source: [CIE11664-2](crate::cite::CIE_11664_2) Table B.1, every second row.
-#[must_use]
-pub fn d65(lambda_nm: f64) -> f64 {
-    let x = (lambda_nm - 360.0) / 10.0;
-    let steps = D65.iter().zip(&D65[1..]).enumerate();
-    for (i, (a, b)) in steps {
-        let t = x - i as f64;
-        if (0.0..=1.0).contains(&t) {
-            return a + t * (b - a);
-        }
-    }
-    0.0
-}
-
-const D65: [f64; 48] = [
-    46.6383, 52.0891, 49.9755, 54.6482, 82.7549, 91.486, 93.4318, 86.6823, 104.865, 117.008, 117.812,
-    114.861, 115.923, 108.811, 109.354, 107.802, 104.79, 107.689, 104.405, 104.046, 100.0, 96.3342, 95.788,
-    88.6856, 90.0062, 89.5991, 87.6987, 83.2886, 83.6992, 80.0268, 80.2146, 82.2778, 78.2842, 69.7213,
-    71.6091, 74.349, 61.604, 69.8856, 75.087, 63.5927, 46.4182, 66.8054, 63.3828, 64.304, 59.4519, 51.959,
-    57.4406, 60.3125,
-];
 
 const AG: &[[f64; 3]] = &[
     [354.2, 0.10, 1.419],

@@ -6,6 +6,7 @@ pub mod blinn_phong;
 pub mod burley_diffusion;
 pub mod charlie;
 pub mod clearcoat;
+pub mod colour;
 pub mod dipole;
 pub mod fresnel;
 pub mod ggx;

@@ -6,7 +6,7 @@
 //! Subscripts are angles in degrees: `f0` at normal incidence, `f90` at grazing, `f82` near 82 (cosine 1/7).
 
 /// Cosine at which the F82 tint is read.
-const MU_82: f64 = 1.0 / 7.0;
+pub const MU_82: f64 = 1.0 / 7.0;
 
 /// `1 / (c (1 − c)⁶)` at that cosine, its largest value: 823543/46656.
 pub const F82_SCALE: f64 = 823_543.0 / 46_656.0;
@@ -50,6 +50,14 @@ pub fn schlick_generalised(f0: f64, f90: f64, exponent: f64, cos_i: f64) -> f64 
 #[must_use]
 pub fn f82_dip(f0: f64, tint: f64) -> f64 {
     schlick(f0, 1.0, MU_82) * (1.0 - tint) * F82_SCALE
+}
+
+/// The tint of a material that reflects `f0` at normal incidence and `f82` at cosine 1/7: `f82` over Schlick's value there.
+///
+/// Source: [Kutz2021](crate::cite::KUTZ_2021). Range: above 1 where the material reflects more than Schlick's curve.
+#[must_use]
+pub fn tint_of(f0: f64, f82: f64) -> f64 {
+    f82 / schlick(f0, 1.0, MU_82)
 }
 
 /// The F82-tint factor, not clamped: `F = F_schlick(c) − b c (1 − c)⁶` with b of [`f82_dip`].

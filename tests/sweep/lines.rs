@@ -6,6 +6,7 @@ use crate::sweep::quad::{self, Edge, Setting, mark, sharp, sorted};
 use crate::sweep::texel::Texel;
 use brdfbake::models::{Brdf, Params};
 use brdfbake::terms::blackbody::{planck, wyman_xyz, xyz_to_srgb};
+use brdfbake::terms::colour::{cie_xyz, d65};
 use brdfbake::terms::metals;
 use brdfbake::terms::thin_film::{self, Film};
 use glam::DVec3;
@@ -42,10 +43,10 @@ pub(crate) fn truths(t: &Texel) -> Truths {
     }
 }
 
-/// Ends of the fitted curves of the eye, and of `kinks`, between 360 and 830 nm.
-fn spectrum(kinks: &[f64]) -> Vec<Edge> {
+/// Ends of the fitted curves of the eye, between 360 and 830 nm.
+fn spectrum() -> Vec<Edge> {
     let eye = [437.0, 442.0, 459.0, 501.1, 530.9, 568.8, 599.8];
-    sorted(mark(360.0), mark(830.0), eye.iter().chain(kinks).map(|x| mark(*x)).collect())
+    sorted(mark(360.0), mark(830.0), eye.iter().map(|x| mark(*x)).collect())
 }
 
 /// Two settings of one integral: value and error.
@@ -56,12 +57,12 @@ fn both(mut run: impl FnMut(&Setting) -> f64) -> (f64, f64) {
 
 /// Linear sRGB of a reflectance under D65, a white mirror being 1.
 fn daylight(kinks: &[f64], f: &dyn Fn(f64) -> f64) -> Truths {
-    let tens: Vec<f64> = (36..=83).map(|i| 10.0 * f64::from(i)).chain(kinks.iter().copied()).collect();
-    let edges = spectrum(&tens);
+    let kinks = kinks.iter().copied().filter(|k| *k > 360.0 && *k < 830.0 && k.fract() > 0.0);
+    let edges = sorted(mark(360.0), mark(830.0), (361..830).map(f64::from).chain(kinks).map(mark).collect());
     let sum = |c: usize, f: &dyn Fn(f64) -> f64| {
         both(|s| {
             s.pieces(&edges, 1e3 * s.tolerance, &mut |at, _, _| {
-                f(at.x) * metals::d65(at.x) * xyz_to_srgb(wyman_xyz(at.x))[c]
+                f(at.x) * d65(at.x) * xyz_to_srgb(cie_xyz(at.x))[c]
             })
             .value
         })
@@ -76,13 +77,16 @@ fn daylight(kinks: &[f64], f: &dyn Fn(f64) -> f64) -> Truths {
 
 fn blackbody(t: &Texel, p: &Params) -> Truths {
     let temperature = t.axis("temperature");
-    let edges = spectrum(&[]);
+    let fitted = p.choice("eye").unwrap() == "wyman-2013";
+    let standard = || sorted(mark(360.0), mark(830.0), (361..830).map(f64::from).map(mark).collect());
+    let edges = if fitted { spectrum() } else { standard() };
+    let eye = |lambda: f64| if fitted { wyman_xyz(lambda) } else { cie_xyz(lambda) };
     let scale = |temperature: f64| planck(560.0, temperature);
     let sum = |temperature: f64, weight: &dyn Fn([f64; 3]) -> f64| {
         let unit = scale(temperature);
         both(|s| {
             s.pieces(&edges, 1e2 * s.tolerance, &mut |at, _, _| {
-                planck(at.x, temperature) / unit * weight(wyman_xyz(at.x))
+                planck(at.x, temperature) / unit * weight(eye(at.x))
             })
             .value
         })

@@ -4,6 +4,7 @@ use super::helpers::{close, rows, table, texel};
 use crate::common::{bake, request};
 use crate::tolerance::{DIGIT_LOST, DIGITS_LOST, FEW_ROUNDINGS, MANY_ROUNDINGS};
 use brdfbake::grid::{Axis, Quantity, Texel};
+use brdfbake::terms::metals;
 use brdfbake::verify;
 
 const MU: (&str, f64, f64) = ("mu", 0.0, 1.0);
@@ -29,12 +30,19 @@ fn conductors_agree_with_high_precision_values() {
     }
 }
 
-/// Linear sRGB by another program: numpy, textbook complex amplitudes, Simpson's rule at 94 000 wavelengths.
+/// Linear sRGB by another program: numpy, textbook complex amplitudes, the CIE 1931 observer and D65 as their tables have them, twelve
+/// Gauss points in each nm.
 const GOLD: &[(f64, [f64; 3])] = &[
-    (1.0, [1.035_571_976_21, 0.729_528_037_087, 0.364_362_118_041]),
-    (0.5, [1.018_162_046_15, 0.739_107_701_013, 0.400_715_738_293]),
-    (0.1, [0.991_353_957_042, 0.893_330_120_84, 0.724_134_404_968]),
-    (0.02, [0.998_225_550_071, 0.976_293_144_134, 0.931_968_273_836]),
+    (1.0, [1.037_554_373_212, 0.728_348_845_034, 0.364_595_150_412]),
+    (0.5, [1.020_061_113_149, 0.737_984_937_886, 0.400_933_137_577]),
+    (0.1, [0.992_196_815_169, 0.892_830_448_060, 0.724_227_692_708]),
+    (0.02, [0.998_429_626_153, 0.976_171_027_512, 0.931_991_190_303]),
+];
+
+/// The same under a coat of index 1.5.
+const COATED_GOLD: &[(f64, [f64; 3])] = &[
+    (1.0, [1.026_520_505_404, 0.672_671_261_068, 0.259_616_815_588]),
+    (0.1, [0.994_392_182_519, 0.916_451_054_013, 0.770_758_833_970]),
 ];
 
 #[test]
@@ -57,12 +65,89 @@ type Coloured = (f64, f64, f64, f64, f64, [f64; 3]);
 /// As [`GOLD`].
 const FILMS: &[Coloured] = &[
     (1.33, 1.5, 0.0, 0.0, 1.0, [0.04, 0.04, 0.04]),
-    (1.33, 1.5, 0.0, 400.0, 1.0, [0.016_798_289_517_6, 0.039_863_027_688_1, 0.013_567_438_918_8]),
-    (1.5, 1.33, 0.0, 550.0, 0.5, [0.075_968_384_480_7, 0.121_100_826_785, 0.065_518_992_687_7]),
-    (1.33, 1.5, 0.0, 1200.0, 0.25, [0.198_902_080_101, 0.242_562_889_924, 0.231_648_973_634]),
-    (2.5, 2.5, 3.4, 60.0, 0.8, [0.185_598_633_989, 0.371_734_119_444, 0.554_587_687_684]),
-    (1.5, 0.2, 3.4, 9000.0, 0.9, [0.917_169_992_567, 0.917_219_789_997, 0.917_196_174_792]),
+    (1.33, 1.5, 0.0, 400.0, 1.0, [0.016_695_275_327, 0.039_902_689_642, 0.013_567_421_149]),
+    (1.5, 1.33, 0.0, 550.0, 0.5, [0.075_771_638_362, 0.121_157_059_371, 0.065_534_560_275]),
+    (1.33, 1.5, 0.0, 1200.0, 0.25, [0.199_051_932_136, 0.242_634_679_829, 0.231_599_792_305]),
+    (2.5, 2.5, 3.4, 60.0, 0.8, [0.183_416_488_973, 0.372_834_141_376, 0.554_431_742_390]),
+    (1.5, 0.2, 3.4, 9000.0, 0.9, [0.917_163_057_536, 0.917_219_530_850, 0.917_200_613_275]),
 ];
+
+/// Alumina of 200 nm on aluminium at mu = 0.6, in vacuum and in water.
+const ALUMINA: &[(&str, [f64; 3])] = &[
+    ("1", [0.907_478_979_100, 0.883_524_491_774, 0.793_988_691_206]),
+    ("1.33", [0.870_235_681_983, 0.881_781_491_974, 0.863_005_431_835]),
+];
+
+#[test]
+fn films_on_metals_and_metals_under_coats_are_what_another_program_computes() {
+    for (mu, expected) in COATED_GOLD {
+        let bound = table("fresnel-conductor", "srgb", r#"{"metal": "au", "eta": 1.5}"#, &[MU]);
+        let e = texel(&bound, &[*mu], 1e-6);
+        for (c, x) in expected.iter().enumerate() {
+            close(&format!("coat {mu}"), e.value[c], *x, e.error[c] + 1e-10);
+        }
+    }
+    for (eta, expected) in ALUMINA {
+        let params = format!(r#"{{"metal": "al", "n2": 1.77, "eta": {eta}}}"#);
+        let e = texel(&table("thin-film", "srgb", &params, &[MU, ("film", 0.0, 1e3)]), &[0.6, 200.0], 1e-6);
+        for (c, x) in expected.iter().enumerate() {
+            close(&format!("film in {eta}"), e.value[c], *x, e.error[c] + 1e-10);
+        }
+    }
+}
+
+/// A metal by rows is the metal; a list of three is three tables; a curve with F0 and tint meets the metal where it must.
+#[test]
+fn metals_by_rows_by_channels_and_by_tint() {
+    let of = |layout: &str, params: &str| table("fresnel-conductor", layout, params, &[MU]);
+    let rows = format!(r#"{{"metal": "rows", "nk": {:?}}}"#, metals::find("cu").unwrap().rows);
+    for layout in ["rgb", "srgb", "polarised", "f82-tint"] {
+        let [own, given] = [r#"{"metal": "cu"}"#, &rows].map(|p| texel(&of(layout, p), &[0.3], 1e-6));
+        for (a, b) in own.value.iter().zip(&given.value) {
+            close(layout, *a, *b, 0.0);
+        }
+    }
+    let three = of("rgb", r#"{"metal": "index", "n": [0.44, 0.53, 1.09], "k": [3.69, 2.77, 1.83]}"#);
+    // closed form: ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2)
+    for (c, f0) in [0.887_824, 0.788_292, 0.435_014].into_iter().enumerate() {
+        close("F0 of brass", texel(&three, &[1.0], 1e-9).value[c], f0, 5e-7);
+    }
+    let series = r#"{"n3": [0.44, 0.53, 1.09], "k3": [3.69, 2.77, 1.83]}"#;
+    let films = table("thin-film", "series", series, &[MU, ("film", 0.0, 1e3)]);
+    let green = table("thin-film", "series", r#"{"n3": 0.53, "k3": 2.77}"#, &[MU, ("film", 0.0, 1e3)]);
+    let [films, green] = [films, green].map(|b| texel(&b, &[0.7, 300.0], 1e-9).value);
+    close("green", films[1], green[1], 0.0);
+    assert!((films[0] - green[0]).abs() > 0.01);
+    for mu in [1.0, 1.0 / 7.0] {
+        let [f, tint] = ["rgb", "f82-tint"].map(|l| texel(&of(l, r#"{"metal": "al"}"#), &[mu], 1e-9).value);
+        for c in 0..3 {
+            close(&format!("tint at {mu}"), tint[c], f[c], MANY_ROUNDINGS);
+        }
+    }
+}
+
+/// What cannot be: a reason that names it.
+#[test]
+fn metals_that_cannot_be_are_refused() {
+    for (layout, params, part) in [
+        ("srgb", r#"{"metal": "index", "n": [0.4, 0.5, 1.0]}"#, "lists of three have no spectrum"),
+        ("rgb", r#"{"metal": "rows"}"#, "wants two rows or more"),
+        ("rgb", r#"{"nk": [[400, 1, 2], [700, 1, 2]]}"#, "write metal = \"rows\""),
+        ("rgb", r#"{"metal": "rows", "nk": [[500, 1, 2], [700, 1, 2]]}"#, "from 500 to 700 nm"),
+        ("rgb", r#"{"metal": "rows", "nk": [[400, 1, 2], [400, 1, 2]]}"#, "row 2 is not beyond"),
+        ("rgb", r#"{"metal": "index", "n": [0.4, 0.5]}"#, "or three in a list"),
+        ("rgb", r#"{"metal": "index", "n": [0.4, 0.5, -1]}"#, "n = -1"),
+    ] {
+        let request = brdfbake::tables::spec::Request {
+            kind: "fresnel-conductor".to_owned(),
+            layout: Some(layout.to_owned()),
+            params: serde_json::from_str(params).unwrap(),
+            ..Default::default()
+        };
+        let why = request.bind().unwrap_err().to_string();
+        assert!(why.contains(part), "{params}: {why}");
+    }
+}
 
 #[test]
 fn films_are_what_another_program_computes() {

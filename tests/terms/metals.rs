@@ -2,12 +2,12 @@
 
 use crate::terms::values::assert_relative;
 use crate::tolerance::{
-    COLOUR, COLOUR_WHITE, DIGIT_LOST, DIGITS_LOST, FEW_ROUNDINGS, INTEGRAL_11, INVERSE_AT_A_POLE,
+    CIE_AREAS, COLOUR, COLOUR_WHITE, DIGIT_LOST, DIGITS_LOST, FEW_ROUNDINGS, INTEGRAL_11, INVERSE_AT_A_POLE,
     MANY_ROUNDINGS, near,
 };
 use brdfbake::integrate::gauss;
 use brdfbake::terms::metals::{self, METALS};
-use brdfbake::terms::{blackbody, fresnel, gulbrandsen, lazanyi};
+use brdfbake::terms::{blackbody, colour, fresnel, gulbrandsen, lazanyi};
 
 #[test]
 fn lazanyi_meets_the_exact_value_at_both_ends() {
@@ -99,12 +99,12 @@ fn colours_are_near_those_in_use() {
             near!(*g, e, COLOUR, "{id}: {got:?}, published {expected:?}");
         }
     }
-    // D65 seen by the fitted eye is white in sRGB to the quality of the fit
+    // D65 seen by the standard observer is white in sRGB, whose matrix has seven digits
     let mut xyz = [0.0; 3];
     for i in 0..=470 {
         let lambda = 360.0 + f64::from(i);
-        for (sum, eye) in xyz.iter_mut().zip(blackbody::wyman_xyz(lambda)) {
-            *sum += metals::d65(lambda) * eye;
+        for (sum, eye) in xyz.iter_mut().zip(colour::cie_xyz(lambda)) {
+            *sum += colour::d65(lambda) * eye;
         }
     }
     let white = blackbody::xyz_to_srgb(xyz);
@@ -112,5 +112,12 @@ fn colours_are_near_those_in_use() {
         (white[0] / white[1] - 1.0).abs() < COLOUR_WHITE && (white[2] / white[1] - 1.0).abs() < COLOUR_WHITE,
         "{white:?}"
     );
-    assert_eq!((metals::d65(359.0), metals::d65(560.0), metals::d65(831.0)), (0.0, 100.0, 0.0));
+    assert_eq!((colour::d65(359.0), colour::d65(560.0), colour::d65(831.0)), (0.0, 100.0, 0.0));
+    assert_eq!((colour::cie_xyz(555.0)[1], colour::cie_xyz(831.0)[1]), (1.0, 0.0));
+    // the three functions have equal areas, as the CIE made them: to the digits of its rows
+    let area = (360..=830).fold([0.0; 3], |sum, l| {
+        let xyz = colour::cie_xyz(f64::from(l));
+        [0, 1, 2].map(|c| sum[c] + xyz[c])
+    });
+    assert!(area.iter().all(|a| (a / area[1] - 1.0).abs() < CIE_AREAS), "{area:?}");
 }

@@ -211,6 +211,14 @@ pub const ETA_CONDUCTOR: Param = Param::number(
     Preset::Value(0.2),
 )
 .also(&["n"]);
+/// `outside` of a conductor.
+pub const OUTSIDE: Param = Param::number(
+    "outside",
+    "eta_i",
+    "index of the medium above, 1.5 for a coat of varnish: eta and k are divided by it",
+    [0.1, 10.0],
+    Preset::Value(1.0),
+);
 /// `k` of a conductor.
 pub const K: Param =
     Param::number("k", "k", "extinction coefficient; 0 is a dielectric", [0.0, 1e3], Preset::Value(3.9));
@@ -222,6 +230,15 @@ pub const K: Param =
 pub fn masking(params: &Params) -> Result<Masking, ParamError> {
     let separable = params.choice("masking")? == "separable";
     Ok(if separable { Masking::Separable } else { Masking::Correlated })
+}
+
+/// The Fresnel factor of a conductor whose parameters are [`ETA_CONDUCTOR`], [`K`] and [`OUTSIDE`].
+///
+/// # Errors
+/// [`ParamError::Undeclared`] where one of them is not declared.
+pub fn conductor(params: &Params) -> Result<Fresnel, ParamError> {
+    let [eta, k, outside] = params.numbers(["eta", "k", "outside"])?;
+    Ok(Fresnel::Conductor { eta: eta / outside, k: k / outside })
 }
 
 /// Both widths: each zero or neither (a groove of zero width has no density along one axis only).

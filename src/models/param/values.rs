@@ -9,6 +9,8 @@ use serde_json::Value as Json;
 pub enum Value {
     /// A number.
     Number(f64),
+    /// Numbers of red, green and blue.
+    Rgb([f64; 3]),
     /// A word.
     Choice(&'static str),
     /// Rows of numbers.
@@ -83,6 +85,18 @@ impl Params {
         match self.value(id)? {
             Value::Number(v) => Ok(*v),
             _ => Err(self.undeclared(id, "a number")),
+        }
+    }
+
+    /// A number for each of red, green and blue; one number is all three.
+    ///
+    /// # Errors
+    /// As [`Params::number`].
+    pub fn rgb(&self, id: &str) -> Result<[f64; 3], ParamError> {
+        match self.value(id)? {
+            Value::Number(v) => Ok([*v; 3]),
+            Value::Rgb(all) => Ok(*all),
+            _ => Err(self.undeclared(id, "a number or three")),
         }
     }
 
@@ -161,6 +175,7 @@ impl Params {
     pub fn to_json(&self, skip: &[&str]) -> serde_json::Map<String, Json> {
         let json = |v: &Value| match v {
             Value::Number(n) => Json::from(*n),
+            Value::Rgb(all) => Json::from(all.as_slice()),
             Value::Choice(c) => Json::from(*c),
             Value::Rows(rows) => rows.iter().map(|r| Json::from(r.as_slice())).collect(),
         };
@@ -200,12 +215,20 @@ fn parse(model: &'static str, param: &Param, value: &Json) -> Result<Value, Para
     let wrong = |allowed: String| ParamError::Kind { model, key: param.id, got: value.to_string(), allowed };
     match param.kind {
         Kind::Number { min, max, .. } => {
-            let got = value.as_f64().ok_or_else(|| wrong("a number".to_owned()))?;
-            if !(got >= min && got <= max) {
-                return Err(ParamError::Range { model, key: param.id, got, min, max });
+            let allowed =
+                if param.coloured { "a number, or three in a list: red, green, blue" } else { "a number" };
+            let number = |value: &Json| {
+                let got = value.as_f64().ok_or_else(|| wrong(allowed.to_owned()))?;
+                if !(got >= min && got <= max) {
+                    return Err(ParamError::Range { model, key: param.id, got, min, max });
+                }
+                // -0 and 0 are the same number
+                Ok(got + 0.0)
+            };
+            match value.as_array().map(Vec::as_slice) {
+                Some([r, g, b]) if param.coloured => Ok(Value::Rgb([number(r)?, number(g)?, number(b)?])),
+                _ => Ok(Value::Number(number(value)?)),
             }
-            // -0 and 0 are the same number
-            Ok(Value::Number(got + 0.0))
         }
         Kind::Choice(words) => words
             .iter()

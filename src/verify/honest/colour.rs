@@ -3,11 +3,18 @@
 use super::quad::{self, Sum, WIDE};
 use super::{Asked, Truth, fresnel};
 use crate::math::complex::Complex;
+use crate::tables::metal::Index;
 use crate::tables::role::{Glow, Polarisation};
 use crate::tables::{Role, Spec};
 use crate::terms::blackbody::{WYMAN_BREAKS, wyman_xyz, xyz_to_srgb};
+use crate::terms::colour::{cie_xyz, d65};
 use crate::terms::{metals, thin_film};
 use std::f64::consts::PI;
+
+/// Gauss rules of two and of three points on [0, 1].
+const TWO: [(f64, f64); 2] = [(0.211_324_865_405_187_12, 0.5), (0.788_675_134_594_812_9, 0.5)];
+const THREE: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
 /// Roundings of a value.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -16,6 +23,8 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 #[derive(Debug)]
 pub(super) struct Colour {
     breaks: Vec<f64>,
+    /// By the fit of Wyman and others.
+    fitted: bool,
     white: [f64; 3],
 }
 
@@ -28,25 +37,66 @@ impl Colour {
             )
         };
         let role = spec.roles().into_iter().find(colours)?;
-        let mut breaks: Vec<f64> = WYMAN_BREAKS.to_vec();
-        if !matches!(role, Role::BlackBody(..)) {
-            breaks.extend((36..=83).map(|i| 10.0 * f64::from(i)));
-            let rows =
-                spec.params.choice("metal").ok().and_then(metals::find).into_iter().flat_map(|m| m.rows);
-            breaks.extend(rows.map(|row| row[0]).filter(|l| (360.0..830.0).contains(l)));
+        let glows = matches!(role, Role::BlackBody(..));
+        let fitted = glows && spec.params.choice("eye").ok()? == "wyman-2013";
+        let mut breaks: Vec<f64> =
+            if fitted { WYMAN_BREAKS.to_vec() } else { (360..=830).map(f64::from).collect() };
+        if !glows {
+            let names = if matches!(role, Role::MetalColour(_)) { ["n", "k"] } else { ["n3", "k3"] };
+            let kinks = Index::of(&spec.params, names).ok()?.kinks();
+            breaks.extend(kinks.into_iter().filter(|l| (360.0..830.0).contains(l)));
         }
         breaks.sort_by(f64::total_cmp);
         breaks.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-        let mut colour = Colour { breaks, white: [1.0; 3] };
-        let white = colour.over_spectrum(1e-12, &mut |lambda| metals::d65(lambda));
+        let mut colour = Colour { breaks, fitted, white: [1.0; 3] };
+        if glows {
+            return Some(colour);
+        }
+        let white = colour.in_daylight(1e-10, &mut |_| 1.0);
         colour.white = [0, 1, 2].map(|c| white.value[c]);
         Some(colour)
+    }
+
+    /// Linear sRGB of a reflectance in daylight: Gauss rules of two and of three points between the whole wavelengths, on halves of
+    /// halves until they agree.
+    fn in_daylight(&self, target: f64, f: &mut dyn FnMut(f64) -> f64) -> Sum {
+        let mut sum = Sum::ZERO;
+        for parts in [1, 2, 4, 8, 16, 32] {
+            let [two, three] = [self.composite(&TWO, parts, f), self.composite(&THREE, parts, f)];
+            for c in 0..3 {
+                sum.value[c] = three[c];
+                sum.error[c] = (three[c] - two[c]).abs() + ROUNDING * self.white[c].abs();
+            }
+            if sum.error[..3].iter().all(|e| *e <= target) {
+                break;
+            }
+        }
+        sum
+    }
+
+    /// A rule of nodes and weights on every part of every piece.
+    fn composite(&self, rule: &[(f64, f64)], parts: u32, f: &mut dyn FnMut(f64) -> f64) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for pair in self.breaks.windows(2) {
+            let length = (pair[1] - pair[0]) / f64::from(parts);
+            for part in 0..parts {
+                for (x, w) in rule {
+                    let lambda = pair[0] + length * (f64::from(part) + x);
+                    let light = w * length * d65(lambda) * f(lambda);
+                    for (s, eye) in sum.iter_mut().zip(xyz_to_srgb(cie_xyz(lambda))) {
+                        *s += light * eye;
+                    }
+                }
+            }
+        }
+        sum
     }
 
     /// Linear sRGB of a spectrum; the fourth channel is its luminance.
     fn over_spectrum(&self, target: f64, f: &mut dyn FnMut(f64) -> f64) -> Sum {
         quad::integrate(&self.breaks, 4, &[target; WIDE], 1000, &mut |lambda| {
-            let (xyz, power) = (wyman_xyz(lambda), f(lambda));
+            let xyz = if self.fitted { wyman_xyz(lambda) } else { cie_xyz(lambda) };
+            let power = f(lambda);
             let rgb = xyz_to_srgb(xyz);
             let mut sum = Sum::ZERO;
             for (s, v) in sum.value.iter_mut().zip([rgb[0], rgb[1], rgb[2], xyz[1]]) {
@@ -64,23 +114,27 @@ impl Colour {
         match role {
             Role::MetalColour(band) => {
                 let i = band.index();
+                let mu = at("mu")?;
                 let factor = &mut |lambda: f64| {
-                    let f = fresnel::of_metal(asked.spec, Polarisation::None, lambda, asked.at);
-                    metals::d65(lambda) * f.map_or(f64::NAN, |t| t.value)
+                    let f = fresnel::of_metal(asked.spec, Polarisation::None, (mu, 0, lambda), asked.at);
+                    f.map_or(f64::NAN, |t| t.value)
                 };
-                let sum = self.over_spectrum(0.5 * target * self.white[i], factor);
+                let sum = self.in_daylight(0.5 * target * self.white[i], factor);
                 Some(self.under_white(&sum, i))
             }
             Role::FilmColour(band) => {
                 let i = band.index();
-                let (mu, film) = (at("mu")?, Film::of(&number, at("film")?)?);
-                let sum = self.over_spectrum(0.5 * target * self.white[i], &mut |lambda| {
-                    metals::d65(lambda) * film.airy(mu, lambda)
+                let (mu, index) = (at("mu")?, Index::of(&asked.spec.params, ["n3", "k3"]).ok()?);
+                let film = |lambda: f64| Film::of(&number, (&index, 0, lambda), at("n3"), at("film")?);
+                let sum = self.in_daylight(0.5 * target * self.white[i], &mut |lambda| {
+                    film(lambda).map_or(f64::NAN, |film| film.airy(mu, lambda))
                 });
                 Some(self.under_white(&sum, i))
             }
             Role::FilmSeries(band) => {
-                let film = Film::of(&number, at("film")?)?;
+                let index = Index::of(&asked.spec.params, ["n3", "k3"]).ok()?;
+                let of = (&index, band.index(), metals::RGB_NM[band.index()]);
+                let film = Film::of(&number, of, at("n3"), at("film")?)?;
                 Some(film.series(at("mu")?, number("orders")?.round(), band.index()))
             }
             Role::BlackBody(glow, band) => self.glow(glow, band.index(), &number, at("temperature")?, target),
@@ -150,9 +204,18 @@ struct Film {
 }
 
 impl Film {
-    fn of(number: &dyn Fn(&str) -> Option<f64>, thickness_nm: f64) -> Option<Film> {
-        let below = Complex::new(number("n3")?, number("k3")?);
-        Some(Film { n2: number("n2")?, below, thickness_nm })
+    /// In the indices relative to what lies above, and in its wavelengths. `n3` is that of an axis.
+    fn of(
+        number: &dyn Fn(&str) -> Option<f64>,
+        (index, colour, lambda_nm): (&Index<'_>, usize, f64),
+        n3: Option<f64>,
+        thickness_nm: f64,
+    ) -> Option<Film> {
+        let (n, k) = index.at(colour, lambda_nm);
+        let n = if matches!(index, Index::Given { .. }) { n3.unwrap_or(n) } else { n };
+        let above = number("eta")?;
+        let below = Complex::new(n / above, k / above);
+        Some(Film { n2: number("n2")? / above, below, thickness_nm: thickness_nm * above })
     }
 
     /// `N cos theta` of the three media, and their squared indices.

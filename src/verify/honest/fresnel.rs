@@ -2,6 +2,7 @@
 
 use super::Truth;
 use crate::math::complex::Complex;
+use crate::tables::metal::Index;
 use crate::tables::role::{Polarisation, Side};
 use crate::tables::{Role, Spec};
 use crate::terms::metals;
@@ -92,14 +93,26 @@ pub(super) fn of_dielectric(spec: &Spec, p: Polarisation, side: Side, at: &[f64]
 }
 
 /// A Fresnel factor of a metal.
-pub(super) fn of_metal(spec: &Spec, p: Polarisation, lambda_nm: f64, at: &[f64]) -> Option<Truth> {
-    let mu = at[spec.axis("mu")?];
+///
+/// `mu` is the cosine; `band` tells which number of a list is meant.
+pub(super) fn of_metal(
+    spec: &Spec,
+    p: Polarisation,
+    (mu, band, lambda_nm): (f64, usize, f64),
+    at: &[f64],
+) -> Option<Truth> {
     let number = |id: &str| spec.number(id, at).ok();
-    let (n, k) = match metals::find(spec.params.choice("metal").ok()?) {
-        Some(metal) => metal.index(lambda_nm),
-        None => (number("n")?, number("k")?),
-    };
-    Some(conductor(mu, n, k).of(p))
+    let index = Index::of(&spec.params, ["n", "k"]).ok()?;
+    let (mut n, mut k) = index.at(band, lambda_nm);
+    if matches!(index, Index::Given { .. }) {
+        let swept = |id: &str, fixed: f64| spec.axis(id).map_or(fixed, |i| at[i]);
+        (n, k) = (swept("n", n), swept("k", k));
+    }
+    let eta = number("eta")?;
+    let own = conductor(mu, n / eta, k / eta).of(p);
+    // quotients are rounded
+    let moved = conductor(mu, n / eta * (1.0 + f64::EPSILON), k / eta).of(p).value - own.value;
+    Some(Truth { value: own.value, error: own.error + 2.0 * moved.abs() })
 }
 
 /// A factor in closed form.
@@ -145,11 +158,29 @@ fn of_schlick_dielectric(mu: f64, eta: f64) -> Truth {
     spread(at, sin2, sin2).mean()
 }
 
+/// The curve through F at cosines 1 and 1/7.
+fn of_tint(spec: &Spec, band: usize, at: &[f64]) -> Option<Truth> {
+    let mu = at[spec.axis("mu")?];
+    let f = |mu: f64| of_metal(spec, Polarisation::None, (mu, band, metals::RGB_NM[band]), at);
+    let (f0, f82) = (f(1.0)?, f(1.0 / 7.0)?);
+    let curve = |mu: f64| f0.value + (1.0 - f0.value) * libm::pow(1.0 - mu, 5.0);
+    let dip = |mu: f64| mu * libm::pow(1.0 - mu, 6.0);
+    // what is left at 1/7 goes with the dip
+    let part = dip(mu) / dip(1.0 / 7.0);
+    let value = curve(mu) - (curve(1.0 / 7.0) - f82.value) * part;
+    let error = 2.0 * f0.error + f82.error + 16.0 * f64::EPSILON;
+    Some(Truth { value: value.clamp(0.0, 1.0), error })
+}
+
 /// Roles of this file.
 pub(super) fn truth(role: Role, spec: &Spec, at: &[f64]) -> Option<Truth> {
     match role {
         Role::Dielectric(p, side) => of_dielectric(spec, p, side, at),
-        Role::Metal(p, band) => of_metal(spec, p, metals::RGB_NM[band.index()], at),
+        Role::Metal(p, band) => {
+            let mu = at[spec.axis("mu")?];
+            of_metal(spec, p, (mu, band.index(), metals::RGB_NM[band.index()]), at)
+        }
+        Role::MetalTint(band) => of_tint(spec, band.index(), at),
         Role::FresnelForm { clamped } => of_form(spec, clamped, at),
         _ => None,
     }
