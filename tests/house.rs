@@ -3,6 +3,7 @@
 mod cli;
 mod command;
 mod counted;
+mod engine_pages;
 mod examples;
 mod layering;
 mod layout;

@@ -256,34 +256,6 @@ fn every_page_is_listed_and_can_be_read_in_a_terminal() {
     }
 }
 
-/// What the text beside the recipe of an engine says.
-const PARTS: [&str; 3] = ["## Put it in place", "## Import settings", "## See that it took"];
-
-#[test]
-fn every_engine_has_a_page_that_says_what_to_replace_and_how_to_see_it() {
-    for engine in ENGINES {
-        let file = format!("presets/engines/{}.md", engine.id);
-        for part in PARTS {
-            let text = engine.guide.split_once(&format!("{part}\n"));
-            let text = text.unwrap_or_else(|| panic!("{file}: write a section `{part}`")).1;
-            let words = text.split("\n## ").next().unwrap().split_whitespace().count();
-            assert!(words >= 5, "{file}: section `{part}` has {words} words: say it");
-        }
-        let page = plain(&engine_page(engine, 1).unwrap());
-        let command = format!("brdfbake bake --engine {}", engine.id);
-        for part in
-            engine.files.iter().flat_map(|f| [f.replaces, f.read]).chain([command.as_str(), engine.version])
-        {
-            let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
-            assert!(
-                words(&page).contains(&words(part)),
-                "the page of {} does not have: {part}\n{page}",
-                engine.id
-            );
-        }
-    }
-}
-
 /// The code blocks of a language, with the page that they stand in.
 fn blocks(language: &str) -> Vec<(String, String)> {
     let mut found = Vec::new();

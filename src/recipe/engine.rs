@@ -23,7 +23,8 @@ pub struct Engine {
     pub reader: Reader,
     /// The text of the recipe.
     pub recipe: &'static str,
-    /// How to put the tables in place, import settings, and how to see that it took: `presets/engines/NAME.md`.
+    /// How to put the tables in place, import settings, how to see that it took, and what the engine computes at start-up:
+    /// `presets/engines/NAME.md`.
     pub guide: &'static str,
     /// The files, in the order of the tables of the recipe.
     pub files: &'static [EngineFile],

@@ -24,6 +24,8 @@ const fn clamped(engine: Engine, at_least: f64, widens: bool, source: &'static s
 
 const THREE_ROUGHNESS: &str =
     "lights_physical_fragment.glsl: max(roughnessFactor, 0.0525) + geometryRoughness, at most 1";
+const THREE_DFG: &str = "the table in build/three.module.js and build/three.tsl.js, by a plugin of the bundler; \
+                         src/renderers/shaders/DFGLUTData.js in a checkout";
 const FILAMENT_ROUGHNESS: &str =
     "MIN_PERCEPTUAL_ROUGHNESS 0.045; gltfio builds its materials with specularAntiAliasing";
 const BEVY_ROUGHNESS: &str = "pbr_lighting.wgsl: perceptualRoughnessToRoughness clamps to [0.089, 1]";
@@ -75,14 +77,26 @@ pub static ENGINES: &[Engine] = &[
             Shader("wgsl"),
             &[
                 measured(
-                    file("bevy-dfg", "crates/bevy_pbr/src/environment_map/dfg.ktx2", SPLIT),
+                    file(
+                        "bevy-dfg",
+                        "the resource DfgLut, or crates/bevy_pbr/src/environment_map/dfg.ktx2",
+                        SPLIT
+                    ),
                     "dfg.ktx2 at 4805ca79, MIT or Apache-2.0",
                     [7.581e-2, 4.489e-4],
                     [9.343e-3, 1.318e-4]
                 ),
-                file("bevy-ltc-matrix", "crates/bevy_pbr/src/ltc/ltc.ktx2, layer 0", LTC_1),
+                file(
+                    "bevy-ltc-matrix",
+                    "the resource AreaLightLuts, or crates/bevy_pbr/src/ltc/ltc.ktx2, layer 0",
+                    LTC_1
+                ),
                 measured(
-                    file("bevy-ltc-magnitude", "crates/bevy_pbr/src/ltc/ltc.ktx2, layer 1", LTC_2),
+                    file(
+                        "bevy-ltc-magnitude",
+                        "the resource AreaLightLuts, or crates/bevy_pbr/src/ltc/ltc.ktx2, layer 1",
+                        LTC_2
+                    ),
                     "ltc.ktx2 at 4805ca79, MIT or Apache-2.0",
                     [9.430e-2, 9.129e-4],
                     [3.303e-2, 6.654e-4]
@@ -101,7 +115,7 @@ pub static ENGINES: &[Engine] = &[
             Shader("glsl"),
             &[
                 measured(
-                    file("three-dfg", "src/renderers/shaders/DFGLUTData.js", SWAPPED),
+                    file("three-dfg", THREE_DFG, SWAPPED),
                     "DFGLUTData.js of 0.187.0, MIT",
                     [1.479e-1, 4.544e-3],
                     [3.840e-2, 1.809e-3]
@@ -161,12 +175,12 @@ pub static ENGINES: &[Engine] = &[
             ),
             file(
                 "babylon-openpbr-brdf",
-                "the base64 text of the OpenPBR BRDF in Misc/brdfTextureTools.js",
+                "scene.openPBREnvironmentBRDFTexture, or the base64 text of the OpenPBR BRDF in Misc/brdfTextureTools.js",
                 "(mu, roughness), expanded from RGBD; (F90 - F0) r + F0 g, b / 16 of the tint at 82 degrees"
             ),
             file(
                 "babylon-fuzz-brdf",
-                "the base64 text of the fuzz BRDF in Misc/brdfTextureTools.js",
+                "scene.environmentFuzzBRDFTexture, or the base64 text of the fuzz BRDF in Misc/brdfTextureTools.js",
                 "(roughness, mu); A = 0.005 + 0.875 r, B = -0.18 + 0.182 g, R = 0.75 b"
             ),
         ]

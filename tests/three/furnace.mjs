@@ -8,7 +8,7 @@
 // show the compensation of direct light. Expected are the formulas of three's shader with accurate integrals (expected.toml), not with
 // texels of a table.
 //
-// `--texels least-squares` bakes the table with texels that are fitted to the reader.
+// `--texels least-squares` bakes the table with texels that are fitted to the reader; `--tables DIR` takes it from there.
 //
 // Writes furnace.json, furnace.md and furnace.png. Exit code: 0 the baked table was loaded and is nearer on average, 1 not, 77 skipped.
 
@@ -37,6 +37,7 @@ const REPLACED = 'src/renderers/shaders/DFGLUTData.js';
 
 const three = packageFolder('three');
 const temporary = mkdtempSync(join(tmpdir(), 'brdfbake-three-'));
+const tables = resolve(option('--tables', temporary));
 const bake = (...what) => execFileSync(brdfbake, ['bake', ...what, '-o', temporary, '--quiet'], { stdio: 'inherit' });
 
 /** What to bake: the engine's tables, or the same recipe with a line more. */
@@ -56,7 +57,7 @@ function find(path) {
     if (rest === undefined || rest.includes('..')) return undefined;
     if (table === 'baked' && rest === `three/${REPLACED}`) {
         served += 1;
-        return join(temporary, 'DFGLUTData.js');
+        return join(tables, 'DFGLUTData.js');
     }
     return rest.startsWith('three/') ? join(three, rest.slice(6)) : join(here, rest);
 }
@@ -82,7 +83,7 @@ async function run(open, browser, faults) {
     console.log(markdown(result));
     console.log(`${browser}, three ${result.three}`);
 
-    const text = readFileSync(join(temporary, 'DFGLUTData.js'), 'utf8');
+    const text = readFileSync(join(tables, 'DFGLUTData.js'), 'utf8');
     const written = text.slice(text.indexOf('Uint16Array( ['), text.indexOf('] )')).match(/0x[0-9a-f]{4}|\b\d+\b/g);
     const same = baked.table.codes.length === 512 && written.slice(-512).every((w, i) => Number(w) === baked.table.codes[i]);
     const wrong = [...faults];
@@ -98,7 +99,7 @@ async function run(open, browser, faults) {
 
 let code = 1;
 try {
-    bake(...table());
+    if (tables === temporary) bake(...table());
     bake(join(here, 'expected.toml'));
     code = await withBrowser(find, run);
 } finally {
