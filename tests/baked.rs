@@ -8,6 +8,7 @@ mod honesty;
 mod laws;
 mod listed;
 mod ltc;
+mod numerics;
 mod size;
 mod sweep;
 mod tables;

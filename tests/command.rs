@@ -1,6 +1,7 @@
 //! The command from outside: what becomes of its output, of signals, of rows and of numbers in messages.
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "test")]
 
+mod again;
 mod build_steps;
 mod eval;
 mod messages;

@@ -5,4 +5,4 @@ mod declared;
 mod files;
 mod honest;
 mod shipped;
-mod support;
+pub(crate) mod support;

@@ -289,7 +289,7 @@ fn what_does_not_fit_is_refused_before_it_is_baked() {
     let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let refused = |plan: &Plan, memory| {
-        let settings = Settings { memory, ..Settings::new(folder.path().join("out")) };
+        let settings = Settings { memory, large: true, ..Settings::new(folder.path().join("out")) };
         run(plan, &settings, &Cancel::new(), &Silent).map(drop)
     };
     let large = plan(8192, "'csv:double'", "");
@@ -300,6 +300,10 @@ fn what_does_not_fit_is_refused_before_it_is_baked() {
         }
         other => panic!("{other:?}"),
     }
+    // a large plan is to be meant, whatever memory there is
+    let unasked = run(&large, &Settings::new(folder.path().join("out")), &Cancel::new(), &Silent);
+    let message = unasked.unwrap_err().to_string();
+    assert!(message.contains("67108864 texels") && message.contains("--yes-large"), "{message}");
     assert!(!folder.path().join("out").exists());
     let small = plan(64, "'csv:double'", "");
     let needed = memory::plan(&small);

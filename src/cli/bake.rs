@@ -3,6 +3,7 @@
 use super::build_step::BuildStep;
 use super::limits::Limits;
 use super::progress::{self, Format};
+use super::reuse::Reuse;
 use super::{Exit, Failure, engine, output, scene, scene_write, suggest};
 use crate::cancel::Cancel;
 use crate::pipeline::pages::Collector;
@@ -48,6 +49,8 @@ pub struct Args {
     step: BuildStep,
     #[command(flatten)]
     limits: Limits,
+    #[command(flatten)]
+    reuse: Reuse,
     /// Print nothing but errors.
     #[arg(short, long)]
     quiet: bool,
@@ -68,7 +71,7 @@ const DOUBT: &str = "something that the scene needs is not baked, is cut, or is 
 
 impl Args {
     fn settings(&self) -> Settings {
-        Settings { strict: self.strict, ..self.limits.settings(&self.out) }
+        self.reuse.settings(Settings { strict: self.strict, ..self.limits.settings(&self.out) })
     }
 
     /// Is there talk on stderr?

@@ -145,7 +145,9 @@ impl From<PipelineError> for Failure {
             PipelineError::Bake { error: BakeError::Texel { error, .. }, .. } => Exit::of_texel(error),
             PipelineError::Files(TransactionError::Twice { .. }) => Exit::Input,
             PipelineError::Encode { error, .. } => Exit::of_encode(error),
-            PipelineError::Fit { .. } | PipelineError::SizeGrid { .. } => Exit::Input,
+            PipelineError::Fit { .. } | PipelineError::SizeGrid { .. } | PipelineError::Large(_) => {
+                Exit::Input
+            }
             PipelineError::Jobs { .. } => Exit::Usage,
             PipelineError::Files(_)
             | PipelineError::Memory { .. }

@@ -18,6 +18,9 @@ pub struct Limits {
     /// is less. What does not fit is refused before it is baked.
     #[arg(long, value_name = "SIZE")]
     memory: Option<ByteSize>,
+    /// Bake a plan of 1e8 texels or 4 GiB and more, which is refused otherwise with what it costs.
+    #[arg(long)]
+    yes_large: bool,
 }
 
 impl Limits {
@@ -31,7 +34,13 @@ impl Limits {
     #[must_use]
     pub fn settings(&self, out: &Path) -> Settings {
         let memory = self.memory.map(|m| m.as_u64());
-        Settings { jobs: self.jobs(), lock_timeout: self.lock_timeout, memory, ..Settings::new(out) }
+        Settings {
+            jobs: self.jobs(),
+            lock_timeout: self.lock_timeout,
+            memory,
+            large: self.yes_large,
+            ..Settings::new(out)
+        }
     }
 }
 

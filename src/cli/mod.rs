@@ -3,6 +3,7 @@
 pub mod albedo;
 pub mod bake;
 mod build_step;
+pub mod cache;
 pub mod check;
 pub mod converge;
 pub mod convert;
@@ -28,6 +29,7 @@ pub mod plot;
 pub mod preview;
 pub mod progress;
 pub mod report;
+pub mod reuse;
 pub mod scene;
 mod scene_write;
 pub mod stress;
@@ -52,7 +54,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 enum Verb {
     /// Bake the tables of a recipe, a preset, an engine or a glTF scene.
-    Bake(bake::Args),
+    Bake(Box<bake::Args>),
     /// Tell what glTF scenes need: each table, who asks for it, its axes, bytes and seconds, and what was left out and why.
     Plan(plan::Args),
     /// Judge the materials of glTF scenes, texel by texel: energy, metalness, base colours, roughness.
@@ -71,6 +73,8 @@ enum Verb {
     Report(report::Args),
     /// Re-check baked files from what they say of themselves, and folders against their manifest.
     Verify(verify::Args),
+    /// Tell what the cache of baked tables and maps holds, or clear it.
+    Cache(cache::Args),
     /// Compare a fresh bake with committed outputs, or commit them.
     Golden(golden::Args),
     /// Evaluate models and functions at directions read as CSV; append the value.
@@ -111,6 +115,7 @@ pub fn run(cli: Cli, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         Verb::Preview(args) => preview::run(&args, cancel),
         Verb::Report(args) => report::run(&args, cancel),
         Verb::Verify(args) => pool(None)?.install(|| verify::run(&args, cancel)),
+        Verb::Cache(args) => cache::run(&args),
         Verb::Golden(args) => golden::run(&args, cancel),
         Verb::Eval(args) => eval::run(&args, cancel),
         Verb::Albedo(args) => albedo::run(&args, cancel),

@@ -2,7 +2,7 @@
 
 use super::{Exit, Failure, output};
 use crate::cancel::Cancel;
-use crate::pipeline::{Event, Progress, Recovery};
+use crate::pipeline::{Event, From, Progress, Recovery};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -169,7 +169,10 @@ impl Bars {
                     bar.set_position(bar.position().max(*done as u64));
                 }
             }
-            Event::TableFinished { .. } | Event::MapFinished { .. } => {
+            Event::TableFinished { .. }
+            | Event::MapFinished { .. }
+            | Event::TableKept { .. }
+            | Event::MapKept { .. } => {
                 if let Some(bar) = state.table.take() {
                     bar.finish_and_clear();
                 }
@@ -200,6 +203,13 @@ impl Progress for Bars {
 
 fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
+}
+
+fn kept(from: From) -> &'static str {
+    match from {
+        From::Folder => "unchanged, its files are there (--force bakes it again)",
+        From::Cache => "from the cache (--force bakes it again)",
+    }
 }
 
 /// One line of text for an event, if it deserves one.
@@ -282,6 +292,17 @@ fn line(event: &Event<'_>) -> Option<String> {
             }
             text
         }
+        Event::TableKept { table, from, missed, laws, verified, .. } => {
+            let held = laws.iter().filter(|l| l.held()).count();
+            let misses =
+                if *missed > 0 { format!(", {missed} texels above the tolerance") } else { String::new() };
+            let verdict = if *verified { "verified" } else { "NOT verified" };
+            format!("  {table}: {}{misses}; {held} of {} laws held, {verdict}", kept(*from), laws.len())
+        }
+        Event::MapKept { map, from, .. } => format!("  {map}: {}", kept(*from)),
+        Event::CacheFault { folder, message } => {
+            format!("  warning: the cache in {} cannot be written: {message}", folder.display())
+        }
         Event::MapFinished { map, levels, largest, hopeless, normals, shape, seconds, .. } => {
             let hopeless =
                 if *hopeless > 0 { format!(", {hopeless} texels with D >= 0.5") } else { String::new() };
@@ -291,10 +312,11 @@ fn line(event: &Event<'_>) -> Option<String> {
             )
         }
         Event::Finding { table, finding } => format!("  warning: {table}: {finding}"),
-        Event::Summary { tables, maps, written, unchanged, bytes, seconds } => format!(
-            "{tables} tables{}, {} kB: {written} files written, {unchanged} unchanged, {seconds:.2} s",
+        Event::Summary { tables, maps, written, unchanged, kept, bytes, seconds } => format!(
+            "{tables} tables{}, {} kB: {written} files written, {unchanged} unchanged{}, {seconds:.2} s",
             if *maps > 0 { format!(", {maps} maps") } else { String::new() },
-            bytes.div_ceil(1000)
+            bytes.div_ceil(1000),
+            if *kept > 0 { format!(", {kept} not baked again") } else { String::new() }
         ),
         _ => return None,
     })

@@ -1,6 +1,6 @@
 //! What a run tells while it works. One event is one line of `--message-format json`.
 
-use super::{Outcome, Recovery};
+use super::{From, Outcome, Recovery};
 use crate::grid::provenance::{ChoiceRecord, LawRecord, SizeRecord};
 use crate::grid::table::Extreme;
 use crate::plan::{Plan, PlannedMap, PlannedTable};
@@ -115,6 +115,37 @@ pub enum Event<'a> {
         /// Seconds spent on laws, rounding and the comparison between texels.
         check_seconds: f64,
     },
+    /// A table is not baked: its files are there, and what was found when they were baked holds.
+    TableKept {
+        /// Table name.
+        table: &'a str,
+        /// Its number in the plan.
+        index: usize,
+        /// Where they were.
+        from: From,
+        /// Texels that missed the tolerance.
+        missed: u64,
+        /// What came of every law.
+        laws: &'a [LawRecord],
+        /// As in [`Event::TableFinished`].
+        verified: bool,
+    },
+    /// A map is not made: its files are there.
+    MapKept {
+        /// Map name.
+        map: &'a str,
+        /// Its number in the plan.
+        index: usize,
+        /// Where they were.
+        from: From,
+    },
+    /// The cache could not be written; the bake goes on without it.
+    CacheFault {
+        /// Its folder.
+        folder: &'a Path,
+        /// The system's message.
+        message: String,
+    },
     /// Work on a map starts.
     MapStarted {
         /// Map name.
@@ -173,6 +204,8 @@ pub enum Event<'a> {
         written: usize,
         /// Files that had the same bytes already.
         unchanged: usize,
+        /// Tables and maps that were not baked, since their files were there.
+        kept: usize,
         /// Bytes in all files.
         bytes: u64,
         /// Seconds in all.
@@ -227,7 +260,7 @@ pub struct Extremum<'a> {
     pub at: &'a [(String, f64)],
 }
 
-impl<'a> From<&'a Extreme> for Extremum<'a> {
+impl<'a> std::convert::From<&'a Extreme> for Extremum<'a> {
     fn from(e: &'a Extreme) -> Self {
         Extremum { largest: e.value, channel: &e.channel, at: &e.at }
     }
@@ -269,7 +302,7 @@ pub struct ChoiceEntry {
     pub practical_mean: Option<f64>,
 }
 
-impl From<&ChoiceRecord> for ChoiceEntry {
+impl std::convert::From<&ChoiceRecord> for ChoiceEntry {
     fn from(c: &ChoiceRecord) -> Self {
         ChoiceEntry {
             texels: c.texels.clone(),
@@ -323,6 +356,7 @@ impl<'a> Event<'a> {
             maps: manifest.maps.len(),
             written: outcome.written,
             unchanged: outcome.unchanged,
+            kept: outcome.kept,
             bytes: tables.chain(maps).sum(),
             seconds,
         }

@@ -4,6 +4,7 @@
 //! The pipeline never prints: it sends [`Event`]s to a [`Progress`].
 
 mod advice;
+mod again;
 pub mod audit;
 mod companion;
 pub mod cost;
@@ -30,10 +31,12 @@ mod table;
 mod texels;
 mod threads;
 pub mod transaction;
+mod work;
 #[cfg(feature = "scene")]
 pub mod write_scene;
 
 pub use crate::plan::MANIFEST;
+pub use again::{CACHE_LIMIT, Cache, CacheSize, From};
 pub use companion::{Companion, Seen};
 pub use event::{Event, Extremum, MapPlanEntry, PlanEntry, Progress, Silent};
 pub use in_memory::{Baked, InMemoryError, bake, bake_until};
@@ -46,9 +49,11 @@ use crate::encode::{EncodeError, RangeFault};
 use crate::plan::Plan;
 use crate::tables::driver::BakeError;
 use crate::verify::Finding;
+use again::Again;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use transaction::{Transaction, TransactionError, Waiting};
+use work::Work;
 
 /// Where to write and what to use for it.
 #[derive(Debug, Clone)]
@@ -63,14 +68,29 @@ pub struct Settings {
     pub strict: bool,
     /// Bytes of memory that the run may take; [`memory::MEMORY`], or what is available if that is less, if none.
     pub memory: Option<u64>,
+    /// Bake everything, even what the folder or the cache holds already.
+    pub force: bool,
+    /// Bake plans of more than [`cost::TEXELS`] texels or [`cost::BYTES`] bytes, too.
+    pub large: bool,
+    /// Where baked tables and maps are kept for other folders and scenes; nowhere if none.
+    pub cache: Option<Cache>,
 }
 
 impl Settings {
-    /// Settings for a folder, with the defaults of the command: every core, [`LOCK_TIMEOUT`],
-    /// [`memory::MEMORY`].
+    /// Settings for a folder: every core, [`LOCK_TIMEOUT`], [`memory::MEMORY`], and what the folder holds is not baked again. No
+    /// cache.
     #[must_use]
     pub fn new(out: impl Into<PathBuf>) -> Settings {
-        Settings { out: out.into(), jobs: None, lock_timeout: LOCK_TIMEOUT, strict: false, memory: None }
+        Settings {
+            out: out.into(),
+            jobs: None,
+            lock_timeout: LOCK_TIMEOUT,
+            strict: false,
+            memory: None,
+            force: false,
+            large: false,
+            cache: None,
+        }
     }
 }
 
@@ -197,6 +217,9 @@ pub enum PipelineError {
         /// Bytes that may be taken.
         limit: u64,
     },
+    /// A plan so large that it was probably not meant.
+    #[error("the plan is large: {0}. If that is meant, allow it (--yes-large)")]
+    Large(cost::Large),
     /// More threads were asked for than are allowed.
     #[error("{from} = {jobs}: at most {limit} threads are allowed")]
     Jobs {
@@ -249,6 +272,8 @@ pub struct Outcome {
     pub written: usize,
     /// Files that had the same bytes already.
     pub unchanged: usize,
+    /// Tables and maps that were not baked, since the folder or the cache held them.
+    pub kept: usize,
 }
 
 /// Runs a plan. `cancel` is looked at between texels and before files are moved to their names.
@@ -282,69 +307,36 @@ pub fn run_with(
     let mut names = plan.files();
     names.extend(companion.iter().flat_map(|c| c.names(plan)));
     let mut files = begin(&names, settings, cancel, progress)?;
-    let mut gathered = gather::Gathered::new(plan);
-    let mut tables = Vec::new();
-    let mut findings = Vec::new();
-    let mut doubts: Vec<Finding> = Vec::new();
-    for (index, planned) in plan.tables.iter().enumerate() {
-        let (shared, keep) = (gathered.is_shared(planned), companion.is_some());
-        match pool.install(|| table::make(plan, planned, index, shared, keep, cancel, progress)) {
-            Ok(made) if findings.is_empty() => {
-                if let Some((companion, seen)) = companion.as_mut().zip(made.seen) {
-                    companion.table(&made.record, seen);
-                }
-                let doubtful = |f: &&Finding| settings.strict && f.result.is_doubt();
-                doubts.extend(made.warnings.iter().filter(doubtful).cloned());
-                gathered.take(index, made.files, cancel, &mut files)?;
-                tables.push(made.record);
-            }
-            Ok(_) => {}
-            // the other tables are still checked, so that one run shows every broken law
-            Err(PipelineError::Laws(broken)) => findings.extend(broken),
-            Err(e) => return Err(e),
-        }
-    }
-    if !findings.is_empty() {
-        return Err(PipelineError::Laws(findings));
-    }
-    if !doubts.is_empty() {
-        return Err(PipelineError::Doubt(doubts));
-    }
-    let mut maps = Vec::new();
-    for (index, planned) in plan.maps.iter().enumerate() {
-        let made = pool.install(|| map::make(&plan.name, planned, index, cancel, progress));
-        let made = made.map_err(|error| of_map(planned.name(), error))?;
-        for (name, bytes) in &made.files {
-            files.stage(name, bytes)?;
-        }
-        maps.push(made.entry);
-    }
+    // a companion looks at texels, which only a bake has
+    let mut again = Again::look(plan, settings, companion.is_none(), &mut files)?;
+    let mut work = Work { plan, settings, pool: &pool, cancel, progress, kept: 0 };
+    let tables = work.tables(&mut again, &mut files, companion.as_deref_mut())?;
+    let maps = work.maps(&mut again, &mut files)?;
     let mut manifest = Manifest::new(plan, tables, maps, Vec::new());
     manifest.set_sizes(|name| files.staged(name));
+    again.give(&manifest, &files, progress);
     let extra = companion.map_or_else(Vec::new, |c| c.finish(&manifest));
     let written = plan.files().into_iter().chain(extra.iter().map(|(name, _)| name.clone()));
     manifest.stale = Manifest::stale(&settings.out, &written.collect::<Vec<_>>());
     for (name, bytes) in &extra {
         files.stage(name, bytes)?;
     }
+    let kept = work.kept;
     let written = files.commit(&manifest.to_bytes())?;
-    let outcome = Outcome { manifest, written: written.written, unchanged: written.unchanged };
+    let outcome = Outcome { manifest, written: written.written, unchanged: written.unchanged, kept };
     progress.event(&Event::summary(&outcome, start.elapsed().as_secs_f64()));
     Ok(outcome)
 }
 
-fn of_map(map: &str, error: map::MapError) -> PipelineError {
-    match error {
-        map::MapError::Run(e) => e,
-        error => PipelineError::Map { map: map.to_owned(), error: Box::new(error) },
-    }
-}
-
-/// What would stop a run before it begins, without a trace: conflicts of file names, and more memory than there is.
+/// What would stop a run before it begins, without a trace: a plan that is larger than was allowed, conflicts of file names, and more
+/// memory than there is.
 ///
 /// # Errors
-/// [`PipelineError::Files`] and [`PipelineError::Memory`].
+/// [`PipelineError::Large`], [`PipelineError::Files`] and [`PipelineError::Memory`].
 pub fn check(plan: &Plan, settings: &Settings) -> Result<(), PipelineError> {
+    if let Some(large) = cost::large(plan).filter(|_| !settings.large) {
+        return Err(PipelineError::Large(large));
+    }
     transaction::check(&settings.out, &plan.files())?;
     memory::check(plan, settings.memory)
 }

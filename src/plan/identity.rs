@@ -8,7 +8,7 @@
 //!   are in it only where one of its containers holds metadata, which names both;
 //! * the contents of its inputs, by what they are to the table.
 //!
-//! Paths, hosts, clocks, threads and the names of inputs are in no file, so they are not in it.
+//! Paths, hosts, clocks and threads are in no file, so they are not in it. Names of inputs are in those of maps only.
 
 use super::map::PlannedMap;
 use super::table::PlannedTable;

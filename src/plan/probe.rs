@@ -30,7 +30,8 @@ pub(super) fn look(path: &Path, [listed, own_axes]: [bool; 2], planned: &Planned
         faults.value(path.key("model"), fault);
         return;
     }
-    if let Some((output, fault)) = too_large(planned) {
+    let look = !planned.bound.baker.is_whole();
+    if let Some((output, fault)) = look.then(|| too_large(planned)).flatten() {
         let path = if listed { path.key("outputs").index(output) } else { path.clone() };
         faults.value(path, fault);
     }

@@ -127,6 +127,10 @@ impl Baker for Table {
         super::closed_form(value, 7)
     }
 
+    fn is_whole(&self) -> bool {
+        true
+    }
+
     fn rule(&self) -> String {
         let [r, g, b] = self.fit().residual;
         format!(

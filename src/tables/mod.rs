@@ -103,6 +103,11 @@ pub trait Baker: Send + Sync {
     /// [`TexelError`] when a value is not finite or a parameter at this point is out of range.
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError>;
 
+    /// True where one texel costs as much as all of them, so that no plan looks at a few.
+    fn is_whole(&self) -> bool {
+        false
+    }
+
     /// The rule in words, for metadata.
     fn rule(&self) -> String;
 

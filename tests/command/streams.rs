@@ -33,6 +33,8 @@ const PRINTING: &[&[&str]] = &[
     &["stress", "schlick:f32", "--json"],
     &["converge", "ggx", "--texels", "2", "--power", "5", "-o", "DIR/converge"],
     &["converge", "ggx", "--texels", "2", "--power", "5", "--json"],
+    &["cache", "--cache-dir", "DIR/cache"],
+    &["cache", "--cache-dir", "DIR/cache", "--json"],
     &["golden", "check", "DIR/golden"],
     &["golden", "check", "DIR/golden", "--json"],
     &["eval", "DIR/rows.csv"],

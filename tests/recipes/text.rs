@@ -76,8 +76,7 @@ fn param(random: &mut Random, p: &Param) -> Option<serde_json::Value> {
 }
 
 fn axis(random: &mut Random, mut axis: Axis) -> Axis {
-    // a look at a sum of Gaussians is a fit of them: few of those
-    axis.len = 2 + random.below(if axis.quantity.id == "gaussian" { 2 } else { 30 });
+    axis.len = 2 + random.below(30);
     let [lo, hi] = axis.domain;
     if random.one_in(3) {
         axis.domain = [lo + 0.25 * (hi - lo) * random.unit(), hi - 0.25 * (hi - lo) * random.unit()];
@@ -147,7 +146,7 @@ fn table(random: &mut Random, name: &str) -> TableRequest {
             request.params.insert(p.id.to_owned(), value);
         }
     }
-    if (random.one_in(2) || kind.id == "gaussian-fit")
+    if random.one_in(2)
         && let Ok(bound) = request.bind()
     {
         request.axes = Some(bound.spec.grid.axes().iter().map(|a| axis(random, a.clone())).collect());

@@ -31,6 +31,11 @@ impl Entry {
         Entry { name: name.to_owned(), bytes: bytes.len() as u64, blake3, replace: true }
     }
 
+    /// One that the folder has already.
+    pub(super) fn kept(name: &str, bytes: u64, blake3: &str) -> Entry {
+        Entry { name: name.to_owned(), bytes, blake3: blake3.to_owned(), replace: false }
+    }
+
     /// Size and hash.
     pub(super) fn facts(&self) -> (u64, &str) {
         (self.bytes, &self.blake3)

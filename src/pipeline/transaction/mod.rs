@@ -34,7 +34,7 @@ mod targets;
 mod tests;
 
 pub use error::TransactionError;
-pub(super) use journal::is_plain;
+pub(super) use journal::{is_inside, is_plain};
 pub use lock::Waiting;
 pub use targets::check;
 
@@ -129,9 +129,7 @@ impl<'a> Transaction<'a> {
     /// # Errors
     /// [`TransactionError::Write`], such as for a full disk.
     pub fn stage(&mut self, name: &str, bytes: &[u8]) -> Result<(), TransactionError> {
-        if self.staged.iter().any(|e| e.name == name) {
-            return Err(TransactionError::Twice { name: name.to_owned(), other: name.to_owned() });
-        }
+        self.is_new(name)?;
         let _hold = self.cancel.hold();
         let path = self.paths.new_file(name);
         let write = || {
@@ -141,6 +139,31 @@ impl<'a> Transaction<'a> {
         write().map_err(|source| error::write(&self.paths.target(name), source))?;
         self.staged.push(Entry::of(name, bytes));
         Ok(())
+    }
+
+    /// A file that the folder has already, with this size and hash: whoever calls has looked at its bytes.
+    ///
+    /// # Errors
+    /// [`TransactionError::Twice`].
+    pub fn keep(&mut self, name: &str, bytes: u64, blake3: &str) -> Result<(), TransactionError> {
+        self.is_new(name)?;
+        self.staged.push(Entry::kept(name, bytes, blake3));
+        Ok(())
+    }
+
+    fn is_new(&self, name: &str) -> Result<(), TransactionError> {
+        match self.staged.iter().any(|e| e.name == name) {
+            true => Err(TransactionError::Twice { name: name.to_owned(), other: name.to_owned() }),
+            false => Ok(()),
+        }
+    }
+
+    /// The bytes of a file that was taken.
+    ///
+    /// # Errors
+    /// Where it cannot be read, or is kept in its place.
+    pub fn read_staged(&self, name: &str) -> std::io::Result<Vec<u8>> {
+        fs::read(self.paths.new_file(name))
     }
 
     /// Size and hash (blake3) of a file that was taken.
@@ -166,7 +189,7 @@ impl<'a> Transaction<'a> {
     pub fn commit_files(mut self) -> Result<Written, TransactionError> {
         let mut result = Written::default();
         for entry in &mut self.staged {
-            entry.replace = !entry.is_at(&self.paths.target(&entry.name));
+            entry.replace = entry.replace && !entry.is_at(&self.paths.target(&entry.name));
             *(if entry.replace { &mut result.written } else { &mut result.unchanged }) += 1;
         }
         if result.written == 0 {

@@ -106,13 +106,17 @@ impl MapRequest {
     /// The files that it reads.
     #[must_use]
     pub fn files_read(&self) -> Vec<std::path::PathBuf> {
+        self.sources().filter(|s| matches!(s, Source::File(_))).map(Source::path).collect()
+    }
+
+    /// Images that it is made of.
+    fn sources(&self) -> impl Iterator<Item = &Source> {
         let roughness = match &self.roughness {
             RoughnessInput::Image { image, .. } => Some(image),
             RoughnessInput::Constant(_) => None,
         };
         let lobes = self.sbrdf.iter().flat_map(SbrdfRequest::images).map(|(_, image)| image);
-        let all = self.normal.iter().map(|n| &n.image).chain(roughness).chain(lobes);
-        all.filter(|s| matches!(s, Source::File(_))).map(Source::path).collect()
+        self.normal.iter().map(|n| &n.image).chain(roughness).chain(lobes)
     }
 
     /// A map with the defaults of a recipe: the rule of this program about the mean normal, one width, KTX2.
@@ -265,12 +269,14 @@ impl PlannedMap {
 
     /// The map as a part of the plan of this name.
     pub(super) fn identified(mut self, plan: &str) -> PlannedMap {
-        self.identity = Hasher::new("map")
+        let hasher = Hasher::new("map")
             .part(plan.as_bytes())
             .part(self.asked.name.as_bytes())
             .part(self.asked.canonical().to_string().as_bytes())
-            .inputs(&self.inputs)
-            .finish();
+            .inputs(&self.inputs);
+        // files of a map name what it was made of
+        let named = self.asked.sources().fold(hasher, |h, source| h.part(source.name().as_bytes()));
+        self.identity = named.finish();
         self
     }
 }
