@@ -9,6 +9,7 @@
 use super::graded::{Graded, Order, Part};
 use super::nodes::Nodes;
 use std::f64::consts::PI;
+use std::sync::OnceLock;
 
 const AZIMUTH: Order = Order(1.0, 0.4);
 
@@ -43,23 +44,40 @@ pub fn visit(mu_o: f64, floor: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
 
 /// Nodes in (0, 1) as `(s, 1 - s, weight)`, about 4 a level.
 pub(super) fn double_exponential(level: f64, mut add: impl FnMut(f64, f64, f64)) {
+    for &[s, rest, weight] in rule(level) {
+        add(s, rest, weight);
+    }
+}
+
+/// Most steps on either side.
+const MOST: usize = 200;
+
+/// They depend on the level alone, so each rule is made once a process.
+fn rule(level: f64) -> &'static [[f64; 3]] {
+    static RULES: [OnceLock<Vec<[f64; 3]>>; MOST + 1] = [const { OnceLock::new() }; MOST + 1];
     let half = half_count(level);
-    let step = END / f64::from(half);
-    for i in -half..=half {
-        let t = step * f64::from(i);
+    RULES[half].get_or_init(|| make(half))
+}
+
+fn make(half: usize) -> Vec<[f64; 3]> {
+    let step = END / half as f64;
+    let mut nodes = Vec::with_capacity(2 * half + 1);
+    for i in 0..=2 * half {
+        let t = step * (i as f64 - half as f64);
         let e = libm::exp(-PI * libm::sinh(t.abs()));
         let (near, far) = (e / (1.0 + e), 1.0 / (1.0 + e));
         let (s, rest) = if t < 0.0 { (near, far) } else { (far, near) };
         let weight = step * PI * libm::cosh(t) * near * far;
         if weight > 0.0 && near > 0.0 {
-            add(s, rest, weight);
+            nodes.push([s, rest, weight]);
         }
     }
+    nodes
 }
 
-#[allow(clippy::cast_possible_truncation, reason = "clamped to [4, 200] first")]
-fn half_count(level: f64) -> i32 {
-    (2.0 * level).ceil().clamp(4.0, 200.0) as i32
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [4, 200] first")]
+fn half_count(level: f64) -> usize {
+    (2.0 * level).ceil().clamp(4.0, MOST as f64) as usize
 }
 
 /// One cosine: the azimuth from the far side (pi) to the near one.
