@@ -9,6 +9,7 @@ mod encode_hostile;
 mod engines;
 mod evidence;
 mod foreign;
+mod fuzz;
 mod rechecked;
 mod sample;
 mod scene;

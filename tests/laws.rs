@@ -5,4 +5,6 @@ mod declared;
 mod files;
 mod honest;
 mod shipped;
-pub(crate) mod support;
+mod support;
+
+pub(crate) use support::bake;

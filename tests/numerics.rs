@@ -1,7 +1,7 @@
 //! Numbers that change raise their version: what was baked before is then baked anew, in folders and caches.
 #![allow(clippy::unwrap_used, reason = "test")]
 
-use crate::laws::support::bake;
+use crate::laws::bake;
 use brdfbake::grid::{Axis, Grid};
 use brdfbake::models::{MODELS, Params};
 use brdfbake::plan::identity::NUMERICS;

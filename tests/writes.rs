@@ -303,8 +303,12 @@ fn a_plan_that_does_not_fit_in_memory_is_refused() {
     };
     fs::write(&recipe, format!("name = 'x'\n{}", (0..4).map(table).collect::<String>())).unwrap();
     let target = folder.path().join("out");
+    // large first: what it costs
+    let o = brdfbake(&["bake", text(&recipe), "-o", text(&target), "--dry-run"]);
+    assert_eq!(o.status.code(), Some(3), "{}", err(&o));
+    assert!(err(&o).contains("268435456 texels") && err(&o).contains("--yes-large"), "{}", err(&o));
     for more in [&["--dry-run"][..], &[], &["--memory", "2GiB"]] {
-        let o = brdfbake(&[&["bake", text(&recipe), "-o", text(&target)], more].concat());
+        let o = brdfbake(&[&["bake", text(&recipe), "--yes-large", "-o", text(&target)], more].concat());
         assert_eq!(o.status.code(), Some(5), "{}", err(&o));
         for part in ["table t0 takes up to", "of memory", "shorter axes", "--memory"] {
             assert!(err(&o).contains(part), "{part}: {}", err(&o));
@@ -312,7 +316,16 @@ fn a_plan_that_does_not_fit_in_memory_is_refused() {
         assert!(!target.exists() && out(&o).is_empty());
     }
     // allowed, it is planned
-    let o = brdfbake(&["bake", text(&recipe), "--dry-run", "--memory", "1TB", "-o", text(&target)]);
+    let o = brdfbake(&[
+        "bake",
+        text(&recipe),
+        "--yes-large",
+        "--dry-run",
+        "--memory",
+        "1TB",
+        "-o",
+        text(&target),
+    ]);
     assert_eq!(o.status.code(), Some(0), "{}", err(&o));
     assert_eq!(brdfbake(&["bake", A, "--memory", "lots"]).status.code(), Some(2));
     assert_eq!(brdfbake(&["bake", A, "-q", "--memory", "100kB", "-o", text(&target)]).status.code(), Some(5));

@@ -4,13 +4,14 @@
 use super::linear::Linear;
 use super::lobes::Lobes;
 use super::{Case, Law, Outcome, Watch, linear, seeds, walk};
-use crate::integrate::View;
+use crate::integrate::{MAX_CHANNELS, View};
 use crate::integrate::sobol::{ReplicateMean, replicate_mean};
 use crate::models::Brdf;
 use crate::tables::integral::Functional;
-use crate::tables::role::Light;
+use crate::tables::role::{Light, Lobe, Side};
 use crate::tables::{Role, place};
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 
 /// The law.
 pub static LAW: Law = Law {
@@ -67,58 +68,96 @@ fn weight(model: &dyn Brdf, wo: DVec3, u: DVec2) -> (f64, f64) {
     }
 }
 
-/// Estimates the integrals of a channel: of the light on the side of the view, through the surface, or both.
-fn sampled(model: &dyn Brdf, view: View, channel: &Linear, seed: u64) -> ReplicateMean {
+/// Estimates the integrals of channels of one lobe by the same draws: of the light on the side of the view, through the surface, or
+/// both.
+fn sampled(model: &dyn Brdf, view: View, channels: &[Linear], seed: u64) -> Vec<ReplicateMean> {
     let wo = view.direction();
-    let btdf = model.transmission().filter(|_| channel.light != Light::Reflected);
-    let [mean] = replicate_mean(seed, REPLICATES, POINTS, |u| {
-        let r = if channel.light == Light::Transmitted {
-            0.0
-        } else {
-            let (weight, cos_d) = weight(model, wo, u);
-            channel.terms.iter().map(|(g, factor)| factor * weight * g.at(cos_d)).sum()
-        };
+    let crosses = channels.iter().any(|c| c.light != Light::Reflected);
+    let stays = channels.iter().any(|c| c.light != Light::Transmitted);
+    let btdf = model.transmission().filter(|_| crosses);
+    let means: [ReplicateMean; MAX_CHANNELS] = replicate_mean(seed, REPLICATES, POINTS, |u| {
+        let (weight, cos_d) = if stays { weight(model, wo, u) } else { (0.0, 1.0) };
         let t = btdf.and_then(|t| {
             let s = t.sample(wo, u).filter(|s| s.pdf > 0.0)?;
             // the flux along wo: light from wo, seen from the drawn side
             Some(t.eval(s.wi, wo) * s.wi.z.abs() / s.pdf)
         });
-        let factor: f64 = channel.terms.iter().map(|(_, factor)| factor).sum();
-        [r + factor * t.unwrap_or(0.0)]
+        let mut values = [0.0; MAX_CHANNELS];
+        for (value, channel) in values.iter_mut().zip(channels) {
+            let term = |(g, factor): &(Functional, f64)| factor * weight * g.at(cos_d);
+            let r: f64 =
+                if channel.light == Light::Transmitted { 0.0 } else { channel.terms.iter().map(term).sum() };
+            let factor: f64 = channel.terms.iter().map(|(_, factor)| factor).sum();
+            let t = if channel.light == Light::Reflected { 0.0 } else { t.unwrap_or(0.0) };
+            *value = r + factor * t;
+        }
+        values
     });
-    ReplicateMean { mean: channel.constant + mean.mean, ..mean }
+    let shifted = |(c, m): (&Linear, &ReplicateMean)| ReplicateMean { mean: c.constant + m.mean, ..*m };
+    channels.iter().zip(&means).map(shifted).collect()
 }
 
 /// Compares channels that are linear in integrals of their lobes with sampling.
 pub(super) fn check(case: &Case<'_>, seed: u64) -> Outcome {
     let lobes = Lobes::new(case.spec());
+    let texels = seeds::texels(case.table, TEXELS, 0xc705);
+    let look = |(i, texel): (usize, usize)| match case.goes_on() {
+        true => look(case, &lobes, texel, seed + i as u64),
+        false => Watch::default(),
+    };
+    let seen: Vec<Watch> = texels.into_par_iter().enumerate().map(look).collect();
     let mut watch = Watch::default();
-    for (i, texel) in
-        seeds::texels(case.table, TEXELS, 0xc705).into_iter().enumerate().take_while(|_| case.goes_on())
-    {
-        let point = case.table.grid.texel(texel);
-        walks(case, texel, seed + i as u64, &mut watch);
-        for (c, role) in case.spec().roles().into_iter().enumerate() {
-            let Some(lobe) = role.lobe() else { continue };
-            let view = lobes.view(lobe, point.values());
-            let Some(channel) = Linear::of(role, case.spec(), view, point.values()) else { continue };
-            let Some(model) = lobes.build(lobe, point.values(), channel.side) else { continue };
-            // a mirror has no density to sample; at the horizon the sampler has nothing to see
-            if model.mirror(view.mu).is_some() || view.mu < 1e-6 {
-                watch.miss(|| "a mirror, or a view in the horizon, has no density to sample".to_owned());
-                continue;
-            }
-            let s = sampled(&*model, view, &channel, seed + i as u64);
-            let (v, e) = case.at(texel, c);
+    seen.into_iter().for_each(|w| watch.join(w));
+    watch.outcome("no texel with a density")
+}
+
+/// The channels of a texel that are integrals of one lobe from one side.
+struct Group {
+    lobe: Lobe,
+    side: Side,
+    /// None: a mirror has no density to sample, and at the horizon the sampler has nothing to see.
+    model: Option<Box<dyn Brdf>>,
+    view: View,
+    channels: Vec<(usize, Linear)>,
+}
+
+/// One texel.
+fn look(case: &Case<'_>, lobes: &Lobes, texel: usize, seed: u64) -> Watch {
+    let mut watch = Watch::default();
+    let point = case.table.grid.texel(texel);
+    walks(case, texel, seed, &mut watch);
+    let mut groups: Vec<Group> = Vec::new();
+    for (c, role) in case.spec().roles().into_iter().enumerate() {
+        let Some(lobe) = role.lobe() else { continue };
+        let view = lobes.view(lobe, point.values());
+        let Some(channel) = Linear::of(role, case.spec(), view, point.values()) else { continue };
+        let side = channel.side;
+        if let Some(group) = groups.iter_mut().find(|g| g.lobe == lobe && g.side == side) {
+            group.channels.push((c, channel));
+            continue;
+        }
+        let Some(model) = lobes.build(lobe, point.values(), side) else { continue };
+        let model = (model.mirror(view.mu).is_none() && view.mu >= 1e-6).then_some(model);
+        groups.push(Group { lobe, side, model, view, channels: vec![(c, channel)] });
+    }
+    for Group { model, view, channels, .. } in groups {
+        let Some(model) = model else {
+            let why = || "a mirror, or a view in the horizon, has no density to sample".to_owned();
+            channels.iter().for_each(|_| watch.miss(why));
+            continue;
+        };
+        let (numbers, channels): (Vec<usize>, Vec<Linear>) = channels.into_iter().unzip();
+        for ((c, channel), s) in numbers.iter().zip(&channels).zip(sampled(&*model, view, &channels, seed)) {
+            let (v, e) = case.at(texel, *c);
             let unseen = UNSEEN * channel.terms.iter().map(|(_, factor)| factor.abs()).fold(0.0, f64::max);
             watch.see(6.0 * s.standard_error + e + unseen - (v - s.mean).abs(), || {
-                let id = &case.table.channels[c].id;
+                let id = &case.table.channels[*c].id;
                 let place = place(&case.table.grid, texel);
                 format!("{id} = {v:.6} against {:.6} +- {:.1e}, {place}", s.mean, s.standard_error)
             });
         }
     }
-    watch.outcome("no texel with a density")
+    watch
 }
 
 /// Compares the albedo of a layer of fibres with random walks.

@@ -37,6 +37,7 @@ use crate::grid::provenance::{LawRecord, Waiver};
 use crate::tables::{Bound, Spec, driver};
 pub use finding::Finding;
 pub use outcome::{Outcome, Seen, Watch};
+use rayon::prelude::*;
 
 /// Every law, in the order in which they are checked.
 pub static LAWS: &[&Law] = &[
@@ -198,9 +199,10 @@ pub fn check_until(
     let mut broken = Vec::new();
     let mut warnings = Vec::new();
     let mut waived = Vec::new();
-    for law in declared(&bound.spec) {
-        let outcome = (law.check)(&case);
-        cancel.check()?;
+    let declared: Vec<&Law> = declared(&bound.spec).collect();
+    let outcomes: Vec<Outcome> = declared.par_iter().map(|law| (law.check)(&case)).collect();
+    cancel.check()?;
+    for (law, outcome) in declared.into_iter().zip(outcomes) {
         match &outcome {
             Outcome::Held(_) => {}
             Outcome::NotChecked(why) => warnings.push(Finding::unchecked(law, why, &bound.spec)),
