@@ -109,13 +109,15 @@ fn every_reader_is_among_them() {
                 continue;
             }
             let source = std::fs::read_to_string(&path).unwrap_or_default();
-            let name = path.strip_prefix(repository().join("src")).unwrap().to_str().unwrap().replace('\\', "/");
+            let name =
+                path.strip_prefix(repository().join("src")).unwrap().to_str().unwrap().replace('\\', "/");
             if name.starts_with("cli/") {
                 continue;
             }
             let takes = |line: &&str| {
                 let signature = line.trim_start();
-                signature.starts_with("pub fn ") && signature.contains("(bytes: &[u8]") || signature.contains("(source: &str,")
+                signature.starts_with("pub fn ") && signature.contains("(bytes: &[u8]")
+                    || signature.contains("(source: &str,")
             };
             for line in source.lines().filter(takes) {
                 let function = line.trim_start().trim_start_matches("pub fn ").split('(').next().unwrap();
@@ -123,8 +125,7 @@ fn every_reader_is_among_them() {
             }
         }
     }
-    let covered: BTreeSet<String> =
-        READERS.iter().flat_map(|r| r.covers).map(|c| (*c).to_owned()).collect();
+    let covered: BTreeSet<String> = READERS.iter().flat_map(|r| r.covers).map(|c| (*c).to_owned()).collect();
     let missing: Vec<&String> = taken.difference(&covered).collect();
     assert!(missing.is_empty(), "no reader in tests/fuzz/readers.rs covers {missing:?}: add a line there");
 }

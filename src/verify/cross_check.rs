@@ -4,8 +4,8 @@
 use super::linear::Linear;
 use super::lobes::Lobes;
 use super::{Case, Law, Outcome, Watch, linear, seeds, walk};
-use crate::integrate::{MAX_CHANNELS, View};
 use crate::integrate::sobol::{ReplicateMean, replicate_mean};
+use crate::integrate::{MAX_CHANNELS, View};
 use crate::models::Brdf;
 use crate::tables::integral::Functional;
 use crate::tables::role::{Light, Lobe, Side};

@@ -36,8 +36,22 @@ const EDGES: [u64; 12] = [
 
 /// Numbers in a text that are none, or are too large.
 const WORDS: [&str; 16] = [
-    "-1", "0", "1e999", "-1e-400", "nan", "inf", "null", "true", "[]", "{}", "\"", "99999999999999999999", "\u{feff}",
-    "\u{202e}", "\\ud800", "1e308",
+    "-1",
+    "0",
+    "1e999",
+    "-1e-400",
+    "nan",
+    "inf",
+    "null",
+    "true",
+    "[]",
+    "{}",
+    "\"",
+    "99999999999999999999",
+    "\u{feff}",
+    "\u{202e}",
+    "\\ud800",
+    "1e308",
 ];
 
 /// A seed under one to eight changes.
@@ -52,7 +66,11 @@ pub(super) fn change(random: &mut Random, seeds: &[Vec<u8>], words: &[&str]) -> 
             1 if !bytes.is_empty() => bytes[at] = u8::try_from(EDGES[random.below(5)]).unwrap(),
             2 | 3 => {
                 let edge = EDGES[random.below(EDGES.len())];
-                let edge = if random.below(2) == 0 { edge.to_le_bytes() } else { edge.to_be_bytes().map(u8::swap_bytes) };
+                let edge = if random.below(2) == 0 {
+                    edge.to_le_bytes()
+                } else {
+                    edge.to_be_bytes().map(u8::swap_bytes)
+                };
                 let width = [2, 4, 8][random.below(3)].min(bytes.len() - at.min(bytes.len()));
                 bytes[at..at + width].copy_from_slice(&edge[..width]);
             }

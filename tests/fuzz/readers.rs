@@ -63,14 +63,35 @@ pub(super) static READERS: &[Reader] = &[
             let engines = ENGINES.iter().map(|e| e.recipe);
             PRESETS.iter().map(|p| p.source).chain(engines).map(|s| s.as_bytes().to_vec()).collect()
         },
-        words: &["[[table]]\n", "[[map]]\n", "[table.size]\n", "axis", "warp", "domain", "kind", "outputs", " = ", "'''"],
+        words: &[
+            "[[table]]\n",
+            "[[map]]\n",
+            "[table.size]\n",
+            "axis",
+            "warp",
+            "domain",
+            "kind",
+            "outputs",
+            " = ",
+            "'''",
+        ],
         read: |bytes| drop(recipe::parse(&String::from_utf8_lossy(bytes), "fuzz.toml")),
     },
     Reader {
         id: "scenes",
         covers: &["scene/mod.rs read_slice", "scene/write/glb.rs open"],
         seeds: || files(&["tests/scenes", "tests/scenes/bumps", "tests/scenes/spec_gloss"], &["gltf", "glb"]),
-        words: &["KHR_materials_sheen", "extensions", "bufferView", "accessors", "materials", "data:,", "uri", "JSON", "BIN"],
+        words: &[
+            "KHR_materials_sheen",
+            "extensions",
+            "bufferView",
+            "accessors",
+            "materials",
+            "data:,",
+            "uri",
+            "JSON",
+            "BIN",
+        ],
         read: |bytes| {
             drop(scene::read_slice(bytes, "fuzz.glb", &Limits::default()));
             drop(Parts::open(bytes));
@@ -93,7 +114,10 @@ fn containers() -> Vec<Vec<u8>> {
 }
 
 fn pictures() -> Vec<Vec<u8>> {
-    let mut seeds = files(&["tests/footprints", "tests/scenes/bumps", "tests/scenes/spec_gloss"], &["png", "jpg", "webp"]);
+    let mut seeds = files(
+        &["tests/footprints", "tests/scenes/bumps", "tests/scenes/spec_gloss"],
+        &["png", "jpg", "webp"],
+    );
     for format in [image::ImageFormat::Png, image::ImageFormat::Jpeg, image::ImageFormat::WebP] {
         let colour = |x: u32, y: u32| image::Rgb([28 * x, 36 * y, 99].map(|c| u8::try_from(c).unwrap()));
         let image = image::DynamicImage::from(image::RgbImage::from_fn(9, 7, colour));
