@@ -8,6 +8,7 @@ pub mod chart;
 pub mod converge;
 pub mod diff;
 pub mod difference;
+mod drawing;
 pub mod inspect;
 mod inspect_map;
 mod letters;

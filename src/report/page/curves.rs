@@ -3,7 +3,7 @@
 use super::shown::spread;
 use super::view::{Texels, View};
 use crate::math::figures::significant;
-use crate::report::plot::{COLOURS, hex};
+use crate::report::drawing::{COLOURS, hex};
 use maud::{Markup, PreEscaped, html};
 
 /// Curves of a figure.
@@ -88,7 +88,7 @@ fn svg(all: &[Curve], title: &str, symbol: &str) -> String {
     let [lo, hi] = ys.map(|v| significant(v, 3));
     let mut svg = format!(
         "<svg viewBox=\"0 0 {w} {h}\" role=\"img\" aria-label=\"{}: between {lo} and {hi}\" font-size=\"12\">",
-        crate::report::plot::escape(title)
+        crate::report::drawing::escape(title)
     );
     for i in 0..=4u8 {
         let part = f64::from(i) / 4.0;
@@ -111,7 +111,7 @@ fn svg(all: &[Curve], title: &str, symbol: &str) -> String {
         "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
         (LEFT + w) / 2.0,
         h - 5.0,
-        crate::report::plot::escape(symbol)
+        crate::report::drawing::escape(symbol)
     );
     for (i, curve) in all.iter().enumerate() {
         let points: Vec<String> = curve

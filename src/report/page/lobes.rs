@@ -4,7 +4,7 @@ use super::colour::uri;
 use super::view::View;
 use crate::math::figures::short;
 use crate::models::{self, Params};
-use crate::report::plot::{self, Scale};
+use crate::report::plot::{self, Look, Scale, Subject};
 use maud::{Markup, html};
 
 /// Angles of incidence, in degrees.
@@ -32,11 +32,13 @@ pub(super) fn lobes(view: &View) -> Option<Markup> {
     if model.mirror(1.0).is_some() {
         return None;
     }
-    let svg = plot::polar(info.title, &shown.join(", "), &*model, &ANGLES, Scale::Log).svg();
+    let subject = Subject { name: shown.join(", "), model: &*model };
+    let look = Look { degrees: ANGLES.to_vec(), azimuth: 0.0, scale: Scale::Log };
+    let svg = plot::polar(info.title, &[subject], &look).svg();
     let what = format!("{}, {}", info.title, shown.join(", "));
     Some(html! {
         figure.lobe {
-            img src=(uri("image/svg+xml", svg.as_bytes())) width="680" height="480"
+            img src=(uri("image/svg+xml", svg.as_bytes()))
                 alt=(format!("{what}: polar plot in the plane of incidence for light from 0, 30, 60 and 80 degrees; logarithmic radius"));
             figcaption { (what) "; logarithmic radius" }
         }
