@@ -7,7 +7,7 @@ use brdfbake::encode::diff_files;
 use std::path::Path;
 use std::process::Command;
 
-const OWN: [&str; 3] = ["command.txt", "normal.png", "recipe.toml"];
+const OWN: [&str; 4] = ["README.md", "command.txt", "normal.png", "recipe.toml"];
 
 /// Runs a command whose last word is the folder of the example, or a file in it, with another folder in its place.
 fn run(command: &str, name: &str, out: &Path, root: &Path) {
@@ -54,4 +54,27 @@ fn examples_are_what_their_commands_make() {
         count += 1;
     }
     assert!(count >= 5);
+}
+
+/// Who takes a table without this program reads how from the page beside it: its formulas and errors are those of the manifest.
+#[test]
+fn tables_to_take_are_described_as_they_are() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("out-examples/15-default-tables");
+    let page = std::fs::read_to_string(folder.join("README.md")).unwrap();
+    let manifest: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.join("manifest.json")).unwrap()).unwrap();
+    for table in manifest["tables"].as_array().unwrap() {
+        let name = table["name"].as_str().unwrap();
+        let row = page.lines().find(|l| l.starts_with(&format!("| `{name}` |"))).unwrap();
+        let read = &table["files"][0]["reconstruction"];
+        for part in ["whole", "practical"] {
+            let error = read[part]["largest"]["value"].as_f64().unwrap();
+            assert!(row.contains(&format!("| {error:.1e} |")), "{name}: {part} {error:.1e}: {row}");
+        }
+        let texels: Vec<String> = table["size"].as_array().unwrap().iter().map(ToString::to_string).collect();
+        assert!(row.contains(&format!("| {} |", texels.join(" x "))), "{name}: {row}");
+        for axis in table["axes"].as_array().unwrap() {
+            assert!(page.contains(axis["coordinate"].as_str().unwrap()), "{name}: {}", axis["coordinate"]);
+        }
+    }
 }
