@@ -35,6 +35,35 @@ type Undo = Box<dyn FnOnce() + Send>;
 #[error("interrupted")]
 pub struct Cancelled;
 
+/// Takes how many steps are done, of how many. It is called from several threads, and not in order.
+pub type Tell<'a> = dyn Fn(usize, usize) + Sync + 'a;
+
+/// A [`Tell`] that nobody listens to.
+pub fn untold(_: usize, _: usize) {}
+
+/// Tells of steps that many threads take.
+pub(crate) struct Steps<'a> {
+    done: AtomicUsize,
+    all: usize,
+    tell: &'a Tell<'a>,
+}
+
+impl<'a> Steps<'a> {
+    /// Tells about a hundred times.
+    pub(crate) fn new(all: usize, tell: &'a Tell<'a>) -> Steps<'a> {
+        tell(0, all);
+        Steps { done: AtomicUsize::new(0), all, tell }
+    }
+
+    /// One more is done.
+    pub(crate) fn one(&self) {
+        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        if done == self.all || done.is_multiple_of(self.all.div_ceil(100).max(1)) {
+            (self.tell)(done, self.all);
+        }
+    }
+}
+
 impl std::fmt::Debug for Cancel {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Cancel")

@@ -340,6 +340,22 @@ fn strict_refuses_scenes_that_ask_for_what_is_not_known() {
 }
 
 #[test]
+fn numbers_of_f32_are_shown_as_f32() {
+    let dir = folder();
+    let scene = dir.path().join("a.gltf");
+    one_material(&scene, "0.4399999976158142", "");
+    for args in [
+        &["plan", text(&scene)][..],
+        &["plan", text(&scene), "--json"],
+        &["bake", "--scene", text(&scene), "--dry-run"],
+    ] {
+        let o = brdfbake(args);
+        let told = out(&o) + &err(&o);
+        assert!(code(&o) == 0 && told.contains("0.44") && !told.contains("0.4399"), "{args:?}: {told}");
+    }
+}
+
+#[test]
 fn an_engine_bakes_as_many_of_its_files_as_the_scene_needs() {
     let dir = folder();
     let scene = dir.path().join("a.gltf");

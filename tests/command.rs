@@ -2,12 +2,17 @@
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "test")]
 
 mod again;
+mod arguments;
 mod build_steps;
 mod eval;
+mod help;
 mod messages;
+mod objects;
 mod outside;
+mod plots;
 mod preview;
 mod report;
+mod schema;
 #[cfg(unix)]
 mod signals;
 mod stopping;

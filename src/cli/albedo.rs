@@ -8,8 +8,16 @@ use crate::models::{self, Params};
 use crate::tables::integral::{Functional, integrate, integrate_in_chart};
 use serde_json::{Map, Value as Json};
 
+/// Shown behind the help.
+const EXAMPLES: &str = concat!(
+    "Examples:",
+    "\n  brdfbake albedo ggx --param alpha=0.25 --mu 0.1,0.5",
+    "\n  brdfbake albedo ward --param alpha_x=0.1 --param alpha_y=0.4 --phi 0.5",
+);
+
 /// Arguments of `albedo`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Model id, or another of its names.
     model: String,
@@ -49,6 +57,13 @@ pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
     }
     let given = parse_params(&args.params)?;
     let (info, model) = build(&args.model, &given)?;
+    if args.phi.abs() > 0.0 && !model.turns() {
+        return Err(Failure::usage(format!(
+            "--phi {}: {} is the same at every azimuth",
+            exact(args.phi),
+            info.id
+        )));
+    }
     let mut text = String::new();
     let mut missed = false;
     if !args.json {

@@ -4,7 +4,7 @@ use super::build_step::BuildStep;
 use super::limits::Limits;
 use super::progress::{self, Format};
 use super::reuse::Reuse;
-use super::{Exit, Failure, engine, output, scene, scene_write, suggest};
+use super::{Exit, Failure, engine, output, planned, scene, scene_write, suggest};
 use crate::cancel::Cancel;
 use crate::pipeline::pages::Collector;
 use crate::pipeline::write_scene::Bake;
@@ -14,8 +14,19 @@ use crate::recipe::{self, LoadError};
 use std::path::PathBuf;
 use std::sync::Arc;
 
+/// Shown behind the help.
+const EXAMPLES: &str = concat!(
+    "Examples:",
+    "\n  brdfbake bake mine.toml -o textures",
+    "\n  brdfbake bake mine.toml -o textures --check",
+    "\n  brdfbake bake split-sum --dry-run",
+    "\n  brdfbake bake --engine three --dry-run",
+    "\n  brdfbake bake --scene scene.glb --dry-run",
+);
+
 /// Arguments of `bake`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Recipe file (TOML), or the name of a preset; the preset `default` if nothing else is given.
     recipe: Option<String>,
@@ -29,10 +40,10 @@ pub struct Args {
     engine: Option<String>,
     /// Bake nothing: print the smallest table that the engine's shader could read to within this error, its recipe, and
     /// the lines that read it. 1e-3 if no error is given.
-    #[arg(long, value_name = "ERROR", requires = "engine", conflicts_with = "scene", num_args = 0..=1, default_missing_value = "1e-3")]
+    #[arg(long, value_name = "ERROR", requires = "engine", conflicts_with_all = SUGGESTS_NOT, num_args = 0..=1, default_missing_value = "1e-3")]
     suggest: Option<f64>,
     /// Where the suggestion must hold: everywhere, or where mu >= 0.05 and roughness >= 0.09.
-    #[arg(long, value_enum, default_value = "whole", requires = "suggest")]
+    #[arg(long, value_enum, default_value = "whole", requires = "suggest", conflicts_with_all = SUGGESTS_NOT)]
     domain: suggest::Domain,
     /// Output folder.
     #[arg(short, long, value_name = "DIR", default_value = "brdfbake-out")]
@@ -43,7 +54,7 @@ pub struct Args {
     #[arg(long)]
     report: bool,
     /// Tell in the report how long each table took.
-    #[arg(long, requires = "report")]
+    #[arg(long, requires = "report", conflicts_with_all = ["suggest", "check", "dry_run"])]
     timings: bool,
     #[command(flatten)]
     step: BuildStep,
@@ -52,7 +63,7 @@ pub struct Args {
     #[command(flatten)]
     reuse: Reuse,
     /// Print nothing but errors.
-    #[arg(short, long)]
+    #[arg(short, long, conflicts_with = "message_format")]
     quiet: bool,
     /// Text on stderr, or one JSON object a line on stdout.
     #[arg(long, value_enum, default_value = "human")]
@@ -61,10 +72,32 @@ pub struct Args {
     /// needs is not baked or not known.
     #[arg(long)]
     strict: bool,
-    /// Print the plan and the file names, and bake nothing.
-    #[arg(long)]
+    /// Bake nothing: print what would be baked, at what cost, as `plan` does.
+    #[arg(long, conflicts_with_all = ["lock_timeout", "force", "no_cache", "cache_dir", "cache_size"])]
     dry_run: bool,
 }
+
+/// What a suggestion does nothing with; `requires` is silent where what is required is refused.
+const SUGGESTS_NOT: [&str; 18] = [
+    "recipe",
+    "scene",
+    "out",
+    "write",
+    "report",
+    "quiet",
+    "strict",
+    "dry_run",
+    "lock_timeout",
+    "memory",
+    "check",
+    "stamp",
+    "depfile",
+    "yes_large",
+    "force",
+    "no_cache",
+    "cache_dir",
+    "cache_size",
+];
 
 /// What `--strict` says of scenes.
 const DOUBT: &str = "something that the scene needs is not baked, is cut, or is not known; nothing was written, since `strict` is set";
@@ -104,6 +137,7 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
             cancel,
         );
     }
+    let mut told = serde_json::json!({ "reason": "dry-run" });
     let (engine, plan) = if args.scene.is_empty() {
         match engine {
             Some((engine, plan)) => (Some(engine), plan),
@@ -113,6 +147,8 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         let entry = engine.as_ref().map(|(engine, _)| *engine);
         let job = scene::job(&scenes, &args.look, engine, args.limits.jobs())?;
         match args.message_format {
+            // a dry run tells all at once
+            Format::Json if args.dry_run => told = scene::json(&job),
             Format::Json => output::data(&scene::json(&job).to_string()).map(|_| ())?,
             Format::Human if args.quiet => {}
             Format::Human => scene::tell(&job),
@@ -124,12 +160,16 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         (entry, job.plan)
     };
     let settings = args.settings();
-    if let Some(exit) = args.step.check(&plan, &args.out)? {
+    if let Some(exit) = args.step.check(&plan, &args.out, args.message_format, args.quiet)? {
         return Ok(exit);
     }
     if args.dry_run {
         pipeline::check(&plan, &settings)?;
-        output::data(&plan.files().join("\n"))?;
+        match args.message_format {
+            Format::Human if args.quiet => {}
+            Format::Human => output::data(&planned::text(&plan, args.report)).map(|_| ())?,
+            Format::Json => output::data(&planned::json(told, &plan, args.report).to_string()).map(|_| ())?,
+        }
         return Ok(Exit::Done);
     }
     let reporter = progress::reporter(args.message_format, args.quiet, cancel);
@@ -173,7 +213,7 @@ pub(super) fn plan(name: &str) -> Result<Plan, Failure> {
     let looks_like_a_file = name.contains(['/', '\\', '.']);
     if !looks_like_a_file {
         if let Some(preset) = recipe::PRESETS.iter().find(|p| p.id == name) {
-            return recipe::parse(preset.source, &format!("presets/{name}.toml")).map_err(Failure::input);
+            return Ok(recipe::parse(preset.source, &format!("presets/{name}.toml"))?);
         }
         let ids: Vec<&str> = recipe::PRESETS.iter().map(|p| p.id).collect();
         let offer = crate::math::nearest::offer(name, ids);
@@ -182,7 +222,7 @@ pub(super) fn plan(name: &str) -> Result<Plan, Failure> {
         )));
     }
     recipe::load(std::path::Path::new(name)).map_err(|error| match error {
-        LoadError::Recipe(e) => Failure::input(e),
-        other => Failure::new(Exit::Io, other),
+        LoadError::Recipe(e) => e.into(),
+        other => Failure::new(Exit::Io, other).at("file", name),
     })
 }

@@ -1,5 +1,6 @@
 //! What Make, Ninja and their like need of a bake: is it stale, when did it run, on what does it depend.
 
+use super::progress::Format;
 use super::{Exit, Failure, output};
 use crate::pipeline::fresh;
 use crate::plan::Plan;
@@ -9,7 +10,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, clap::Args)]
 pub(super) struct BuildStep {
     /// Bake nothing: end with 0 if the folder holds what would be baked, with 7 and the reasons if not.
-    #[arg(long, conflicts_with_all = ["dry_run", "suggest", "write", "stamp", "depfile"])]
+    #[arg(long, conflicts_with_all = ["dry_run", "suggest", "write", "stamp", "depfile", "report", "lock_timeout", "memory", "yes_large", "force", "no_cache", "cache_dir", "cache_size"])]
     check: bool,
     /// Write this file after every bake that succeeds: unchanged outputs keep their time, the stamp is always new.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["dry_run", "suggest"])]
@@ -21,17 +22,28 @@ pub(super) struct BuildStep {
 
 impl BuildStep {
     /// With `--check`, how it ends.
-    pub(super) fn check(&self, plan: &Plan, out: &Path) -> Result<Option<Exit>, Failure> {
+    pub(super) fn check(
+        &self,
+        plan: &Plan,
+        out: &Path,
+        format: Format,
+        quiet: bool,
+    ) -> Result<Option<Exit>, Failure> {
         if !self.check {
             return Ok(None);
         }
-        let why = fresh::stale(plan, out);
-        if why.is_empty() {
-            return Ok(Some(Exit::Done));
-        }
+        let why: Vec<String> = fresh::stale(plan, out).iter().map(ToString::to_string).collect();
         let lines: Vec<String> = why.iter().map(|w| format!("stale: {w}")).collect();
-        output::data(&lines.join("\n"))?;
-        Ok(Some(Exit::Stale))
+        match format {
+            Format::Json => {
+                let reason = if why.is_empty() { "fresh" } else { "stale" };
+                let line = serde_json::json!({ "reason": reason, "folder": out, "why": why });
+                output::data(&line.to_string())?;
+            }
+            Format::Human if quiet || why.is_empty() => {}
+            Format::Human => output::data(&lines.join("\n")).map(|_| ())?,
+        }
+        Ok(Some(if why.is_empty() { Exit::Done } else { Exit::Stale }))
     }
 
     /// After a bake: the rule, then the stamp.

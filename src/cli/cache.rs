@@ -3,8 +3,12 @@
 use super::reuse::{self, CacheArgs};
 use super::{Exit, Failure, output};
 
+/// Shown behind the help.
+const EXAMPLES: &str = "Examples:\n  brdfbake cache --cache-dir kept";
+
 /// Arguments of `cache`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// What to do; without a word, tell what it holds.
     #[arg(value_enum, default_value = "show")]

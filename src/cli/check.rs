@@ -10,8 +10,16 @@ use crate::scene::Reader;
 use serde_json::json;
 use std::path::PathBuf;
 
+/// Shown behind the help.
+const EXAMPLES: &str = concat!(
+    "Examples:",
+    "\n  brdfbake check scene.glb",
+    "\n  brdfbake check scene.glb --rule smooth-half=off --json",
+);
+
 /// Arguments of `check`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// glTF scenes: .gltf or .glb files, folders with all such files below them, or patterns.
     #[arg(required = true)]
@@ -68,9 +76,14 @@ pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
 /// The rules, with the bounds that were asked for.
 fn rules(changes: &[String]) -> Result<Vec<(&'static materials::Rule, f64)>, Failure> {
     let mut rules: Vec<_> = RULES.iter().map(|r| (*r, r.bound)).collect();
+    let mut changed = Vec::new();
     for change in changes {
         let (id, bound) =
             change.split_once('=').ok_or_else(|| Failure::usage(format!("{change}: it is RULE=BOUND")))?;
+        if changed.contains(&id) {
+            return Err(Failure::usage(format!("--rule {change}: `{id}` is given twice; leave one out")));
+        }
+        changed.push(id);
         let Some(place) = rules.iter().position(|(r, _)| r.id == id) else {
             let ids = RULES.iter().map(|r| r.id);
             return Err(Failure::usage(format!("no rule `{id}`{}", crate::math::nearest::offer(id, ids))));

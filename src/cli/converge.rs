@@ -12,8 +12,12 @@ use crate::tables::{self, TABLES};
 use crate::verify::converge::{Asked, Chart, ConvergeError, LEAST_POWER, MOST_POWER, converge};
 use std::path::PathBuf;
 
+/// Shown behind the help.
+const EXAMPLES: &str = "Examples:\n  brdfbake converge ggx --texels 16 --power 8 -o charts";
+
 /// Arguments of `converge`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Kinds of tables whose channels are integrals of a lobe (dfg, albedo), and models, whose albedo is looked at; default: dfg.
     subjects: Vec<String>,
@@ -27,7 +31,7 @@ pub struct Args {
     #[arg(long, value_name = "K", default_value_t = 16)]
     power: u32,
     /// Compare with the JSON file of another run.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["json", "quiet"])]
     compare: Option<PathBuf>,
     /// Also time against error, of this machine: files of their own, that differ from run to run.
     #[arg(long)]
@@ -57,6 +61,12 @@ pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
     }
     if args.texels == 0 {
         return Err(Failure::usage("--texels 0: at least one texel is looked at"));
+    }
+    if args.json && args.out.is_none() && (args.timings || args.bytes) {
+        let option = if args.timings { "--timings" } else { "--bytes" };
+        return Err(Failure::usage(format!(
+            "{option} writes files, and --json alone writes none; add --out"
+        )));
     }
     let names: Vec<&str> = match args.subjects.as_slice() {
         [] => vec!["dfg"],

@@ -9,8 +9,16 @@ use crate::pipeline::write_scene::{self, Request, convert};
 use crate::scene;
 use std::path::PathBuf;
 
+/// Shown behind the help.
+const EXAMPLES: &str = concat!(
+    "Examples:",
+    "\n  brdfbake convert spec-gloss.gltf",
+    "\n  brdfbake convert spec-gloss.gltf --write converted.gltf",
+);
+
 /// Arguments of `convert`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Scene with specular-glossiness materials (.gltf, .glb).
     #[arg(value_name = "SCENE")]
@@ -27,7 +35,7 @@ pub struct Args {
     #[command(flatten)]
     limits: Limits,
     /// Print nothing but errors.
-    #[arg(short, long)]
+    #[arg(short, long, conflicts_with = "json")]
     quiet: bool,
     /// Print what became of each material as JSON on stdout.
     #[arg(long)]

@@ -4,6 +4,7 @@
 use super::{Exit, Failure, engine, output};
 use crate::encode::{self, Encoder};
 use crate::functions::{self, FunctionInfo};
+use crate::grid::quantity::unit_words;
 use crate::grid::{Axis, Quantity};
 use crate::math::figures::exact;
 use crate::models::{self, Kind, ModelInfo, Param, Preset};
@@ -11,8 +12,12 @@ use crate::recipe::{self, ENGINES, PRESETS};
 use crate::tables::{self, Layout, ModelUse, Selection, Setting, TableInfo, source};
 use crate::verify;
 
+/// Shown behind the help.
+const EXAMPLES: &str = concat!("Examples:", "\n  brdfbake describe ggx", "\n  brdfbake describe dfg",);
+
 /// Arguments of `describe`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Id of a model, function, table, preset, engine, law, quantity or container.
     id: String,
@@ -97,8 +102,9 @@ pub fn function(f: &FunctionInfo) -> String {
         .collect();
     let inputs =
         if inputs.is_empty() { "none; the columns may be blank".to_owned() } else { inputs.join("; ") };
-    text.push_str(&format!("angles: {inputs}\n"));
-    text.push_str(&format!("value: in {}, unit {}\n", interval(f.range), f.unit));
+    text.push_str(&format!("angles, in radians: {inputs}\n"));
+    let unit = unit_words(f.unit).unwrap_or("1");
+    text.push_str(&format!("value: in {}, unit {unit}\n", interval(f.range)));
     text.push_str(&format!("notes: {}\n", f.notes));
     if !f.also.is_empty() {
         let names: Vec<&str> = f.also.iter().map(|a| a.name).collect();
@@ -212,7 +218,7 @@ fn quantity(q: &'static Quantity) -> String {
         "quantity {}, symbol {}, unit {}\n{}; domain {}{base}\n",
         q.id,
         q.symbol,
-        q.unit,
+        q.unit_words().unwrap_or("1"),
         q.meaning,
         interval(q.domain)
     )
@@ -240,8 +246,9 @@ fn params(params: &[Param]) -> String {
                     Preset::Value(v) => exact(v),
                     Preset::Of(id) => id.to_owned(),
                 };
+                let unit = unit_words(p.unit).map_or_else(String::new, |u| format!(" {u}"));
                 let list = if p.coloured { ", or a list of three: red, green, blue" } else { "" };
-                format!("{}{list}, default {default}", interval([min, max]))
+                format!("{}{unit}{list}, default {default}", interval([min, max]))
             }
             Kind::Choice(words) => format!("{}; default {}", words.join(" | "), words.first().unwrap_or(&"")),
             Kind::Rows { columns, preset } => {

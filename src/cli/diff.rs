@@ -10,8 +10,16 @@ use crate::math::figures::exact;
 use crate::report;
 use std::path::PathBuf;
 
+/// Shown behind the help.
+const EXAMPLES: &str = concat!(
+    "Examples:",
+    "\n  brdfbake diff a.exr b.exr --tolerance 1e-3",
+    "\n  brdfbake diff textures others --json",
+);
+
 /// Arguments of `diff`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// First image or folder.
     a: PathBuf,
@@ -37,7 +45,7 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     /// Print nothing; the exit code tells.
-    #[arg(short, long)]
+    #[arg(short, long, conflicts_with = "json")]
     quiet: bool,
 }
 

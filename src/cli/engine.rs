@@ -8,7 +8,7 @@ use crate::recipe::{self, ENGINES, Engine};
 /// The engine of this id and its plan.
 pub(super) fn plan(id: &str) -> Result<(&'static Engine, Plan), Failure> {
     let engine = find(id)?;
-    Ok((engine, engine.plan().map_err(Failure::input)?))
+    Ok((engine, engine.plan()?))
 }
 
 /// The engine of this id.

@@ -20,8 +20,16 @@ use std::collections::HashMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+/// Shown behind the help.
+const EXAMPLES: &str = concat!(
+    "Examples:",
+    "\n  brdfbake eval directions.csv",
+    "\n  brdfbake eval directions.csv -o values.csv",
+);
+
 /// Arguments of `eval`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// CSV file; stdin if not given.
     file: Option<PathBuf>,
@@ -73,8 +81,11 @@ pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
         cancel.check()?;
         let record = record.map_err(|e| unreadable(&name, e))?;
         let line = record.position().map_or(0, csv::Position::line);
-        let value = evaluate(&record, &header, &mut cache)
-            .map_err(|f| Failure { message: format!("{name}:{line}: {}", f.message), ..f })?;
+        let value = evaluate(&record, &header, &mut cache).map_err(|f| {
+            let message = format!("{name}:{line}: {}", f.message);
+            let told = f.message.clone();
+            Failure { message, ..f }.at("file", name.as_str()).at("line", line).at("message", told)
+        })?;
         if sink.row(header.with(&record, &format!("{value:e}")))? == output::Reader::Gone {
             return Ok(Exit::Done);
         }

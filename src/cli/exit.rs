@@ -5,9 +5,11 @@ use crate::encode::EncodeError;
 use crate::encode::atomic::WriteError;
 use crate::pipeline::PipelineError;
 use crate::pipeline::transaction::TransactionError;
+use crate::recipe::{Diagnostic, RecipeError};
 use crate::report::analytic::FitError;
 use crate::tables::TexelError;
 use crate::tables::driver::BakeError;
+use serde_json::{Value as Json, json};
 
 /// The table of exit codes, for `--help` and README.
 pub const TABLE: &str = "Exit codes:
@@ -75,12 +77,43 @@ pub struct Failure {
     pub message: String,
     /// The exit code.
     pub exit: Exit,
+    /// The message in colours, where it has more of them than its first word.
+    pub styled: Option<String>,
+    /// What is wrong, one by one, as far as it is known: objects with `file`, `line`, `column`, `key`, `message` and so on.
+    pub faults: Vec<Json>,
 }
 
 impl Failure {
     /// A failure with a message.
     pub fn new(exit: Exit, message: impl std::fmt::Display) -> Failure {
-        Failure { message: message.to_string(), exit }
+        Failure { message: message.to_string(), exit, styled: None, faults: Vec::new() }
+    }
+
+    /// The failure as JSON: an object for each fault, or one.
+    #[must_use]
+    pub fn objects(&self) -> Vec<Json> {
+        let object = |fault: &Json| {
+            let mut line = json!({ "reason": "error", "exit": self.exit as u8 });
+            if let (Some(to), Some(from)) = (line.as_object_mut(), fault.as_object()) {
+                to.extend(from.clone());
+                to.entry("message").or_insert_with(|| self.message.clone().into());
+            }
+            line
+        };
+        if self.faults.is_empty() {
+            return vec![object(&json!({ "message": self.message }))];
+        }
+        self.faults.iter().map(object).collect()
+    }
+
+    /// Says what the first fault is, too.
+    #[must_use]
+    pub fn at(mut self, key: &str, value: impl Into<Json>) -> Failure {
+        if self.faults.is_empty() {
+            self.faults.push(json!({}));
+        }
+        self.faults[0][key] = value.into();
+        self
     }
 
     /// Bad arguments.
@@ -95,13 +128,27 @@ impl Failure {
 
     /// Reading or writing failed.
     pub fn io(what: impl std::fmt::Display, error: &std::io::Error) -> Failure {
-        Failure::new(Exit::Io, format!("{what}: {error}"))
+        Failure::new(Exit::Io, format!("{what}: {error}")).at("file", what.to_string())
     }
 }
 
 impl From<Cancelled> for Failure {
     fn from(_: Cancelled) -> Failure {
         Failure::new(Exit::Interrupted, "interrupted")
+    }
+}
+
+impl From<RecipeError> for Failure {
+    fn from(error: RecipeError) -> Failure {
+        let fault = |d: &Diagnostic| {
+            let mut object = json!({ "file": error.file });
+            if let (Some(to), Ok(Json::Object(from))) = (object.as_object_mut(), serde_json::to_value(d)) {
+                to.extend(from);
+            }
+            object
+        };
+        let faults = error.diagnostics.iter().map(fault).collect();
+        Failure { styled: Some(error.styled().to_owned()), faults, ..Failure::input(error) }
     }
 }
 
@@ -182,6 +229,6 @@ impl From<PipelineError> for Failure {
             }
             _ => {}
         }
-        Failure { message, exit }
+        Failure::new(exit, message)
     }
 }

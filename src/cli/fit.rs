@@ -7,8 +7,13 @@ use crate::report::analytic::{self, DEGREES, Fit, FitError, Form, Lang};
 use crate::tables::Bound;
 use crate::tables::spec::Request;
 
+/// Shown behind the help.
+const EXAMPLES: &str =
+    "Examples:\n  brdfbake fit -t fresnel-dielectric --form polynomial --degree 2 --lang wgsl";
+
 /// Arguments of `fit`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// A model; without a table, one whose Fresnel factor splits off. Default: the table's, or ggx.
     model: Option<String>,
@@ -22,7 +27,7 @@ pub struct Args {
     #[arg(short, long)]
     table: Option<String>,
     /// Channels of the kind; its first layout if not given.
-    #[arg(long, requires = "table")]
+    #[arg(long, requires = "table", conflicts_with = "recipe")]
     layout: Option<String>,
     /// Each channel by itself, as P or as P / Q, in the coordinates of the axes; split sums have a form of their own.
     #[arg(long, value_enum)]
@@ -34,7 +39,7 @@ pub struct Args {
     #[arg(short, long)]
     error: Option<f64>,
     /// Where the error is asked for: practical is mu >= 0.05, roughness >= 0.09.
-    #[arg(long, value_enum, default_value = "practical")]
+    #[arg(long, value_enum, default_value = "practical", requires = "error", conflicts_with = "degree")]
     domain: Domain,
     /// Language of the code.
     #[arg(long, value_enum, default_value = "glsl")]

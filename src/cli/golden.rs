@@ -14,8 +14,13 @@ use crate::report;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// Shown behind the help.
+const EXAMPLES: &str =
+    concat!("Examples:", "\n  brdfbake golden check golden", "\n  brdfbake golden bless golden",);
+
 /// Arguments of `golden`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Compare a fresh bake with the folder, or write it there.
     #[arg(value_enum)]
@@ -46,6 +51,10 @@ pub enum What {
 /// # Errors
 /// [`Failure`] for a folder that cannot be read, or a bake that fails; the committed outputs are then as they were.
 pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
+    if args.what == What::Bless && (args.draw.is_some() || args.json) {
+        let option = if args.json { "--json" } else { "--draw" };
+        return Err(Failure::usage(format!("{option} tells of a comparison, and `bless` compares nothing")));
+    }
     let golden = Golden::load(&args.folder).map_err(failure)?;
     let plan = plan(&golden, &args.folder)?;
     let bake =

@@ -5,8 +5,13 @@ use crate::guide::{TOPICS, engine_page, plain, topic};
 use crate::math::nearest::hint;
 use crate::recipe::{self, ENGINES};
 
+/// Shown behind the help.
+const EXAMPLES: &str =
+    concat!("Examples:", "\n  brdfbake guide", "\n  brdfbake guide recipes", "\n  brdfbake guide three",);
+
 /// Arguments of `guide`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// A topic, or an engine; the list of topics if not given.
     topic: Option<String>,

@@ -7,8 +7,16 @@ use crate::encode::{atomic, beside, read};
 use crate::report::{self, recognise};
 use std::path::PathBuf;
 
+/// Shown behind the help.
+const EXAMPLES: &str = concat!(
+    "Examples:",
+    "\n  brdfbake inspect textures/small.exr",
+    "\n  brdfbake inspect textures/small.exr --json",
+);
+
 /// Arguments of `inspect`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Picture files (EXR, KTX2, DDS, PNG, HDR, NPY, MERL, bare numbers), from this program or any other.
     #[arg(required = true)]
@@ -43,7 +51,8 @@ pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
         let bytes = read::load_until(cancel, path).map_err(|e| super::diff::read_failure(&e))?;
         let image = beside::read(path, &bytes, of_file, cancel).map_err(|e| {
             let name = path.display();
-            Failure { message: format!("{name}: {e}"), ..super::diff::read_failure(&e) }
+            let failure = Failure { message: format!("{name}: {e}"), ..super::diff::read_failure(&e) };
+            failure.at("file", name.to_string())
         })?;
         let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
         if args.recognise {

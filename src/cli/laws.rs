@@ -6,8 +6,12 @@ use crate::models::{self, MODELS, ModelInfo};
 use crate::verify::survey::{Survey, Verdict, survey_until};
 use rayon::prelude::*;
 
+/// Shown behind the help.
+const EXAMPLES: &str = "Examples:\n  brdfbake laws lambert ggx";
+
 /// Arguments of `laws`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Model ids; all models if none is given.
     models: Vec<String>,

@@ -37,8 +37,12 @@ pub enum What {
     Checks,
 }
 
+/// Shown behind the help.
+const EXAMPLES: &str = concat!("Examples:", "\n  brdfbake list models", "\n  brdfbake list engines --json",);
+
 /// Arguments of `list`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// What to list.
     #[arg(value_enum)]
@@ -95,7 +99,8 @@ fn rows(what: What) -> Vec<(String, String)> {
             .iter()
             .map(|q| {
                 let base = q.base_formula().map_or_else(String::new, |f| format!(" ({f})"));
-                (q.id.to_owned(), format!("{}{base}", q.meaning))
+                let unit = q.unit_words().map_or_else(String::new, |u| format!(", in {u}"));
+                (q.id.to_owned(), format!("{}{unit}{base}", q.meaning))
             })
             .collect(),
     }

@@ -17,8 +17,12 @@ use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+/// Shown behind the help.
+const EXAMPLES: &str = "Examples:\n  brdfbake map --normal normal.png --roughness 0.4 -o maps";
+
 /// Arguments of `map`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Normal map: PNG, JPEG, EXR, KTX2, DDS or HDR. Codes 0..1 stand for -1..1.
     #[arg(short, long, value_name = "FILE")]
@@ -26,9 +30,9 @@ pub struct Args {
     /// Roughness: an image, or a number.
     #[arg(short, long, value_name = "FILE|NUMBER", default_value = "1")]
     roughness: String,
-    /// Channel of the roughness; its other channels are written too, with plain means. A grey image serves for any colour.
-    #[arg(long, value_name = "NAME", default_value = "G")]
-    channel: String,
+    /// Channel of the roughness, G if not given; its other channels are written too, with plain means. A grey image serves for any colour.
+    #[arg(long, value_name = "NAME")]
+    channel: Option<String>,
     /// The image holds 1 - roughness (gloss, smoothness).
     #[arg(long)]
     gloss: bool,
@@ -63,28 +67,28 @@ pub struct Args {
     #[arg(long, conflicts_with = "single")]
     gltf: bool,
     /// Channels of the normal.
-    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', default_values = ["R", "G", "B"])]
+    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', default_values = ["R", "G", "B"], requires = "normal")]
     normal_channels: Vec<String>,
     /// Green grows down (DirectX); glTF has it grow up.
-    #[arg(long)]
+    #[arg(long, requires = "normal")]
     green_down: bool,
     /// Take z = sqrt(1 - x^2 - y^2) in place of the third channel.
-    #[arg(long)]
+    #[arg(long, requires = "normal")]
     derive_z: bool,
     /// The normal map holds numbers from -1 to 1, not codes.
-    #[arg(long)]
+    #[arg(long, requires = "normal")]
     signed: bool,
     /// Factor of x and y of the normals (normalTexture.scale of glTF); what is written is for a scale of 1.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1.0)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 1.0, requires = "normal")]
     normal_scale: f64,
     /// Take texels without a direction above the surface as flat (padding that was left black).
-    #[arg(long)]
+    #[arg(long, requires = "normal")]
     mend_normals: bool,
     /// Bring the smaller of both maps to the size of the larger one.
-    #[arg(long)]
+    #[arg(long, requires = "normal")]
     resample: bool,
     /// What lies beyond the border, where a map is resampled.
-    #[arg(long, value_enum, default_value = "repeat")]
+    #[arg(long, value_enum, default_value = "repeat", requires = "resample")]
     wrap: WrapMode,
     /// Filter rule: fit, or a published one (`list rules`).
     #[arg(long, default_value = "fit")]
@@ -108,7 +112,7 @@ pub struct Args {
     #[arg(long, value_name = "STORAGE")]
     roughness_storage: Option<String>,
     /// Storage of the normals; of the container, if not given (unorm16, in EXR float).
-    #[arg(long, value_name = "STORAGE")]
+    #[arg(long, value_name = "STORAGE", requires = "normal")]
     normal_storage: Option<String>,
     /// How the names of the files begin.
     #[arg(long, default_value = "map")]
@@ -127,7 +131,7 @@ pub struct Args {
     #[command(flatten)]
     limits: Limits,
     /// Print nothing but errors.
-    #[arg(short, long)]
+    #[arg(short, long, conflicts_with = "json")]
     quiet: bool,
     /// Print what the files say of themselves as JSON on stdout.
     #[arg(long)]
@@ -175,7 +179,7 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         let text = serde_json::to_string_pretty(&outcome.record);
         output::data(&text.map_err(|e| Failure::new(Exit::Internal, e))?)?;
     } else if !args.quiet {
-        output::talk(&summary(&outcome));
+        output::talk(&summary(&outcome, &args.out));
     }
     Ok(Exit::Done)
 }
@@ -253,11 +257,24 @@ fn normal(args: &Args, path: &std::path::Path) -> Result<Input, Failure> {
 
 fn roughness(args: &Args) -> Result<RoughnessInput, Failure> {
     let from = args.from.as_deref().map(|id| from(args, id)).transpose()?;
-    Ok(match args.roughness.parse::<f64>() {
+    let number = args.roughness.parse::<f64>();
+    let of_an_image = [
+        ("--channel", args.channel.is_some()),
+        ("--srgb", args.srgb),
+        ("--from", args.from.is_some()),
+        ("--single", args.single),
+        ("--resample", args.resample),
+    ];
+    if let (Ok(_), Some((option, _))) = (&number, of_an_image.iter().find(|(_, given)| *given)) {
+        let message =
+            format!("{option} tells of an image of the roughness, and it is the number {}", args.roughness);
+        return Err(Failure::usage(message));
+    }
+    Ok(match number {
         Ok(r) => RoughnessInput::Constant(if args.gloss { 1.0 - r } else { r }),
         Err(_) => RoughnessInput::Image {
             image: PathBuf::from(&args.roughness).into(),
-            channel: args.channel.clone(),
+            channel: args.channel.clone().unwrap_or_else(|| "G".to_owned()),
             space: if args.srgb { Space::Srgb } else { Space::Linear },
             gloss: args.gloss,
             from,
@@ -302,7 +319,7 @@ fn format(args: &Args, text: &str) -> Result<Output, Failure> {
 }
 
 /// What was written, level by level.
-fn summary(outcome: &MapOutcome) -> String {
+fn summary(outcome: &MapOutcome, folder: &std::path::Path) -> String {
     let record = &outcome.record;
     let mut out =
         format!("{}: rule {}, normals {}, {}\n", record.name, record.rule, record.normals, record.shape);
@@ -346,7 +363,8 @@ fn summary(outcome: &MapOutcome) -> String {
         let d = short(f64::from(place.distance));
         out.push_str(&format!("worst: level {} ({}, {}) D {d}{limit}\n", place.level, place.x, place.y));
     }
-    out.push_str(&format!("{} files written, {} unchanged", outcome.written, outcome.unchanged));
+    let folder = folder.display();
+    out.push_str(&format!("{folder}: {} files written, {} unchanged", outcome.written, outcome.unchanged));
     out
 }
 

@@ -54,5 +54,8 @@ pub(super) fn refused(error: &PlanError) -> Failure {
         _ => Exit::Input,
     });
     let lines: Vec<String> = error.faults.iter().map(line).collect();
-    Failure::new(exit.max_by_key(|e| *e as u8).unwrap_or(Exit::Internal), lines.join("\nerror: "))
+    let object = |((place, _), line): (&(crate::plan::Place, Fault), &String)| serde_json::json!({ "key": place.to_string(), "message": line });
+    let faults = error.faults.iter().zip(&lines).map(object).collect();
+    let exit = exit.max_by_key(|e| *e as u8).unwrap_or(Exit::Internal);
+    Failure { faults, ..Failure::new(exit, lines.join("\nerror: ")) }
 }

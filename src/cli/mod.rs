@@ -5,6 +5,7 @@ pub mod bake;
 mod build_step;
 pub mod cache;
 pub mod check;
+pub mod completions;
 pub mod converge;
 pub mod convert;
 pub mod describe;
@@ -20,11 +21,13 @@ mod interrupt;
 pub mod laws;
 pub mod limits;
 pub mod list;
+pub mod man;
 pub mod map;
 mod map_options;
 mod map_sbrdf;
 pub mod output;
 pub mod plan;
+mod planned;
 pub mod plot;
 pub mod preview;
 pub mod progress;
@@ -32,16 +35,19 @@ pub mod report;
 pub mod reuse;
 pub mod scene;
 mod scene_write;
+pub mod schema;
 pub mod stress;
 mod suggest;
+pub mod terminal;
 pub mod verify;
 
 use crate::cancel::Cancel;
 use crate::pipeline::pool;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 pub use exit::{Exit, Failure};
 use std::io::Write;
 use std::sync::Arc;
+use terminal::Asked;
 
 /// Bakes BRDF lookup textures to a tolerance, and verifies them as it bakes.
 #[derive(Debug, Parser)]
@@ -49,6 +55,9 @@ use std::sync::Arc;
 pub struct Cli {
     #[command(subcommand)]
     verb: Verb,
+    /// Colour messages on stderr; `auto` heeds NO_COLOR.
+    #[arg(long, value_enum, default_value = "auto", global = true, value_name = "WHEN")]
+    color: terminal::Color,
 }
 
 #[derive(Debug, Subcommand)]
@@ -97,6 +106,12 @@ enum Verb {
     Describe(describe::Args),
     /// Print a page of the guide: recipes, axes, formats, one engine, and more.
     Guide(guide::Args),
+    /// Print the JSON schema of recipes, for editors and for programs that write recipes.
+    Schema(schema::Args),
+    /// Print what makes a shell complete verbs, options and their values.
+    Completions(completions::Args),
+    /// Print a manual page, or write all of them.
+    Man(man::Args),
 }
 
 /// Runs a parsed command. `cancel` is set when the user interrupts.
@@ -127,6 +142,9 @@ pub fn run(cli: Cli, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         Verb::List(args) => list::run(&args),
         Verb::Describe(args) => describe::run(&args),
         Verb::Guide(args) => guide::run(&args),
+        Verb::Schema(args) => schema::run(&args),
+        Verb::Completions(args) => completions::run(&args),
+        Verb::Man(args) => man::run(&args, cancel),
     }
 }
 
@@ -135,11 +153,17 @@ pub fn run(cli: Cli, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
 pub fn main() -> std::process::ExitCode {
     let cancel = Arc::new(Cancel::new());
     interrupt::install(&cancel);
-    let done = match Cli::try_parse() {
+    let asked = Asked::of(std::env::args_os().skip(1));
+    terminal::set(asked.color);
+    let parsed = Cli::command().color(asked.color.into()).try_get_matches();
+    let done = match parsed.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => run(cli, &cancel),
-        Err(e) => answer(&e),
+        Err(e) => answer(&e, asked.json),
     };
     let exit = done.unwrap_or_else(|failure| {
+        if asked.json {
+            output::error_objects(&failure);
+        }
         output::error(&failure);
         failure.exit
     });
@@ -147,7 +171,12 @@ pub fn main() -> std::process::ExitCode {
 }
 
 /// Prints help, the version, or what is wrong with the arguments; clap knows where, and whether colours are wanted.
-fn answer(error: &clap::Error) -> Result<Exit, Failure> {
+fn answer(error: &clap::Error, json: bool) -> Result<Exit, Failure> {
+    if json && error.use_stderr() {
+        let text = error.render().to_string();
+        let message = text.strip_prefix("error: ").unwrap_or(&text).trim_end();
+        output::error_objects(&Failure::usage(message));
+    }
     let printed = error.print().and_then(|()| output::stdout().flush());
     if error.use_stderr() {
         return Ok(Exit::Usage);

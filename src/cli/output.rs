@@ -2,6 +2,7 @@
 //! else that keeps data from being written is a failure of the run.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "the one place that prints")]
 
+use super::terminal::{self, Paint, paint};
 use super::{Exit, Failure, interrupt};
 use std::io::{self, ErrorKind, Write};
 
@@ -51,13 +52,22 @@ pub fn talk(text: &str) {
     let _ = writeln!(err, "{text}");
 }
 
+/// Tells a program what failed, on stdout. What keeps it from that is told to the user with the failure itself.
+pub(super) fn error_objects(failure: &Failure) {
+    let lines: Vec<String> = failure.objects().iter().map(ToString::to_string).collect();
+    let _ = data(&lines.join("\n"));
+}
+
 /// Tells the user what failed.
 pub fn error(failure: &Failure) {
     match failure.exit {
         Exit::Interrupted if !interrupt::is_first_to_tell() => {}
         Exit::Interrupted => talk(&failure.message),
         // diagnostics with carets carry their own heading
-        _ if failure.message.starts_with("error") => talk(&failure.message),
-        _ => talk(&format!("error: {}", failure.message)),
+        _ if failure.message.starts_with("error") => {
+            let styled = failure.styled.as_ref().filter(|_| terminal::is_coloured());
+            talk(styled.unwrap_or(&failure.message));
+        }
+        _ => talk(&format!("{} {}", paint(Paint::Bad, "error:"), failure.message)),
     }
 }

@@ -11,8 +11,12 @@ use base64::Engine as _;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+/// Shown behind the help.
+const EXAMPLES: &str = "Examples:\n  brdfbake preview --roughness 0.2,0.5 --size 64 -o spheres.png";
+
 /// Arguments of `preview`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Shade the materials of a glTF file, each by the mean of its texels, in place of a row over roughness.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["roughness", "base", "metallic"])]

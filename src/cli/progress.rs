@@ -1,12 +1,14 @@
 //! Progress for people: a bar per table and a total on a terminal, plain lines elsewhere, JSON lines on request.
 
+use super::terminal::{Paint, paint};
 use super::{Exit, Failure, output};
 use crate::cancel::Cancel;
-use crate::pipeline::{Event, From, Progress, Recovery};
+use crate::pipeline::{Event, From, Phase, Progress, Recovery};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock};
+use std::time::Duration;
 
 /// How to report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -134,6 +136,8 @@ struct Bars {
 struct State {
     total: Option<ProgressBar>,
     table: Option<ProgressBar>,
+    /// What the table is going through.
+    phase: Option<Phase>,
 }
 
 impl Bars {
@@ -145,17 +149,23 @@ impl Bars {
                 bar.set_style(style(&format!("total {{bar:30}} {{pos}}/{{len}} {what} {{elapsed}}")));
                 state.total = Some(bar);
             }
-            Event::TableStarted { table, texels, .. } => {
-                let bar = self.all.insert(0, ProgressBar::new(*texels as u64));
-                bar.set_style(style("{msg} {bar:30} {pos}/{len} texels"));
-                bar.set_message((*table).to_owned());
-                state.table = Some(bar);
-            }
-            Event::TableProgress { done, .. } => {
-                if let Some(bar) = &state.table {
-                    // rows may finish out of order; the bar only moves forward
-                    bar.set_position(bar.position().max(*done as u64));
+            Event::TableProgress { table, phase, done, steps, .. } => {
+                let (words, all) = (phase.words(), *steps as u64);
+                let bar = state.table.get_or_insert_with(|| self.all.insert(0, ProgressBar::new(all)));
+                if state.phase != Some(*phase) {
+                    state.phase = Some(*phase);
+                    bar.set_style(style(match steps {
+                        0 => "{msg} {spinner} {elapsed}",
+                        _ => "{msg} {bar:30} {pos}/{len}",
+                    }));
+                    bar.set_position(0);
+                    bar.set_length(all);
+                    bar.set_message(format!("{table}: {words}"));
+                    // a phase whose end nobody knows turns by itself
+                    bar.enable_steady_tick(Duration::from_millis(if all == 0 { 100 } else { 1000 }));
                 }
+                // rows may finish out of order; the bar only moves forward
+                bar.set_position(bar.position().max(*done as u64));
             }
             Event::MapStarted { map, .. } => {
                 let bar = self.all.insert(0, ProgressBar::new(0));
@@ -173,6 +183,7 @@ impl Bars {
             | Event::MapFinished { .. }
             | Event::TableKept { .. }
             | Event::MapKept { .. } => {
+                state.phase = None;
                 if let Some(bar) = state.table.take() {
                     bar.finish_and_clear();
                 }
@@ -277,7 +288,8 @@ fn line(event: &Event<'_>) -> Option<String> {
                 text.push_str(&format!(", {missed} texels above the tolerance"));
             }
             let held = laws.iter().filter(|l| l.held()).count();
-            let verdict = if *verified { "verified" } else { "NOT verified" };
+            let verdict =
+                if *verified { paint(Paint::Good, "verified") } else { paint(Paint::Bad, "NOT verified") };
             text.push_str(&format!("; {held} of {} laws held, {verdict}", laws.len()));
             text.push_str(&format!(" [{:.0} ms + {:.0} ms]", bake_seconds * 1e3, check_seconds * 1e3));
             // the same for every output, as a rule: said once
@@ -311,9 +323,12 @@ fn line(event: &Event<'_>) -> Option<String> {
                 seconds * 1e3
             )
         }
-        Event::Finding { table, finding } => format!("  warning: {table}: {finding}"),
-        Event::Summary { tables, maps, written, unchanged, kept, bytes, seconds } => format!(
-            "{tables} tables{}, {} kB: {written} files written, {unchanged} unchanged{}, {seconds:.2} s",
+        Event::Finding { table, finding } => {
+            format!("  {} {table}: {finding}", paint(Paint::Doubtful, "warning:"))
+        }
+        Event::Summary { tables, maps, folder, written, unchanged, kept, bytes, seconds } => format!(
+            "{}: {tables} tables{}, {} kB: {written} files written, {unchanged} unchanged{}, {seconds:.2} s",
+            folder.display(),
             if *maps > 0 { format!(", {maps} maps") } else { String::new() },
             bytes.div_ceil(1000),
             if *kept > 0 { format!(", {kept} not baked again") } else { String::new() }

@@ -10,8 +10,16 @@ use std::io::ErrorKind;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+/// Shown behind the help.
+const EXAMPLES: &str = concat!(
+    "Examples:",
+    "\n  brdfbake report textures",
+    "\n  brdfbake report textures --against others --out page",
+);
+
 /// Arguments of `report`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// A folder that `bake` wrote.
     folder: PathBuf,

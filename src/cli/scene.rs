@@ -1,5 +1,6 @@
 //! What verbs that take glTF scenes share: the files, how they are looked at, and what is said of them.
 
+use super::terminal::{Paint, paint};
 use super::{Exit, Failure, output};
 use crate::math::figures::short;
 use crate::pipeline::pool;
@@ -188,7 +189,9 @@ fn matching(pattern: &str) -> Result<Vec<PathBuf>, Failure> {
 pub(super) fn refused(errors: &[SceneError]) -> Failure {
     let io = errors.iter().all(|e| matches!(e.fault, Fault::Io { .. }));
     let lines: Vec<String> = errors.iter().map(ToString::to_string).collect();
-    Failure::new(if io { Exit::Io } else { Exit::Input }, lines.join("\nerror: "))
+    let fault = |e: &SceneError| serde_json::json!({ "file": e.file, "message": e.fault.to_string() });
+    let exit = if io { Exit::Io } else { Exit::Input };
+    Failure { faults: errors.iter().map(fault).collect(), ..Failure::new(exit, lines.join("\nerror: ")) }
 }
 
 fn unplanned(error: ScenePlanError) -> Failure {
@@ -230,7 +233,9 @@ pub(super) fn tell(job: &Job) {
     }
     folded(survey.needs.left_out.iter().map(|left| format!("  left out: {}", shown(left))));
     let warnings = survey.scenes.iter().flat_map(|s| s.warnings.iter().map(move |w| (&s.file, w)));
-    folded(warnings.map(|(file, w)| format!("  warning: {}: {w}", crate::math::shown::show(file))));
+    folded(warnings.map(|(file, w)| {
+        format!("  {} {}: {w}", paint(Paint::Doubtful, "warning:"), crate::math::shown::show(file))
+    }));
     if job.plan.tables.is_empty() && job.plan.maps.is_empty() {
         output::talk("  nothing to bake");
     }

@@ -15,23 +15,26 @@ use crate::scene::Fault;
 use crate::scene::write::tables::Place;
 use std::path::PathBuf;
 
+/// With these no scene is written; `requires` is silent where what is required is refused.
+const WRITES_NOT: [&str; 4] = ["recipe", "suggest", "check", "depfile"];
+
 /// Options of a scene that is written.
 #[derive(Debug, clap::Args)]
 pub(super) struct SceneWrite {
     /// Write the scene with its tables: a .gltf or .glb file, or a folder. The root gets the extension BRDFBAKE_lookup_tables
     /// (provisional, used and not required); every number's text and every member that is not known stays.
-    #[arg(long, value_name = "PATH", requires = "scene")]
+    #[arg(long, value_name = "PATH", requires = "scene", conflicts_with_all = WRITES_NOT)]
     write: Option<PathBuf>,
     /// Write the same object into `extras`: beside the extension, or in place of it.
-    #[arg(long, value_enum, requires = "write", num_args = 0..=1, default_missing_value = "also")]
+    #[arg(long, value_enum, requires = "write", conflicts_with_all = WRITES_NOT, num_args = 0..=1, default_missing_value = "also")]
     extras: Option<Extras>,
     /// Convert specular-glossiness materials of the scene that is written, which then no longer names
     /// KHR_materials_pbrSpecularGlossiness; what that costs is printed. With `--maps` the base level of each map takes the place of the
     /// core textures.
-    #[arg(long, requires = "write")]
+    #[arg(long, requires = "write", conflicts_with_all = WRITES_NOT)]
     replace: bool,
     /// How they are converted.
-    #[arg(long, value_enum, requires = "replace", default_value = "exact")]
+    #[arg(long, value_enum, requires = "replace", conflicts_with_all = WRITES_NOT, default_value = "exact")]
     spec_gloss: Mode,
 }
 

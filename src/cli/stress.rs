@@ -5,8 +5,12 @@ use crate::cancel::Cancel;
 use crate::report::stress;
 use crate::verify::stress::{Stress, Subject, stress as walk};
 
+/// Shown behind the help.
+const EXAMPLES: &str = "Examples:\n  brdfbake stress lambert schlick:f32";
+
 /// Arguments of `stress`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Ids of models, functions, tables, and terms of 32 bits; all if none is given.
     subjects: Vec<String>,

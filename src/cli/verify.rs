@@ -12,8 +12,16 @@ use crate::pipeline::recheck::shipped::{Shipped, ShippedError, compare};
 use crate::pipeline::recheck::{self, Asked, Beside, FileCheck, Recheck, SAMPLES, Verdict};
 use std::path::{Path, PathBuf};
 
+/// Shown behind the help.
+const EXAMPLES: &str = concat!(
+    "Examples:",
+    "\n  brdfbake verify textures",
+    "\n  brdfbake verify textures/small.exr --samples 500",
+);
+
 /// Arguments of `verify`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Baked files, and output folders with their manifest.json.
     #[arg(required = true)]
@@ -25,13 +33,13 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = SAMPLES)]
     samples: usize,
     /// Compare files that an engine ships, as it reads them, with the integrals that they stand for.
-    #[arg(long, value_name = "ENGINE", conflicts_with_all = ["hashes", "strict"])]
+    #[arg(long, value_name = "ENGINE", conflicts_with_all = ["hashes", "strict", "seed", "samples"])]
     engine: Option<String>,
     /// Which table of the engine, where several have the size of the file.
-    #[arg(long, value_name = "NAME", requires = "engine")]
+    #[arg(long, value_name = "NAME", requires = "engine", conflicts_with_all = ["hashes", "strict", "seed", "samples"])]
     table: Option<String>,
     /// Of folders, compare the bytes of the files alone.
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["seed", "samples"])]
     hashes: bool,
     /// Files of a folder that its manifest does not name fail, too.
     #[arg(long)]
@@ -54,6 +62,10 @@ pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
     }
     if let Some(engine) = &args.engine {
         return shipped(engine, args, cancel);
+    }
+    if (args.hashes || args.strict) && args.paths.iter().all(|p| p.is_file()) {
+        let option = if args.hashes { "--hashes" } else { "--strict" };
+        return Err(Failure::usage(format!("{option} says how folders are checked, and there is none")));
     }
     let mut exit = Exit::Done;
     for path in &args.paths {
@@ -304,7 +316,8 @@ fn unread(path: &Path, error: ReadError) -> Failure {
     match error {
         ReadError::Cancelled(stopped) => stopped.into(),
         ReadError::Io { .. } => Failure::new(Exit::Io, error),
-        error => Failure::new(Exit::Input, format!("{}: {error}", path.display())),
+        error => Failure::new(Exit::Input, format!("{}: {error}", path.display()))
+            .at("file", path.display().to_string()),
     }
 }
 

@@ -138,7 +138,7 @@ pub static QUANTITIES: &[Quantity] = &[
     derived(
         "theta",
         "theta_o",
-        "view angle to the normal, in radians",
+        "view angle to the normal",
         [0.0, FRAC_PI_2],
         Base { id: "mu", map: BaseMap::Cosine },
     ),
@@ -172,6 +172,17 @@ static OWN: &[Quantity] = &[
     base("sheen_roughness", "r", "1", "roughness of the sheen, as its model takes it", [0.0, 1.0]),
 ];
 
+/// A unit in words, angles spelled out; none for pure numbers.
+#[must_use]
+pub fn unit_words(unit: &'static str) -> Option<&'static str> {
+    match unit {
+        "1" => None,
+        "rad" => Some("radians"),
+        "deg" => Some("degrees"),
+        other => Some(other),
+    }
+}
+
 const fn base(
     id: &'static str,
     symbol: &'static str,
@@ -189,10 +200,17 @@ const fn derived(
     domain: [f64; 2],
     base: Base,
 ) -> Quantity {
-    Quantity { id, symbol, unit: "1", meaning, domain, base: Some(base) }
+    let unit = if matches!(base.map, BaseMap::Cosine) { "rad" } else { "1" };
+    Quantity { id, symbol, unit, meaning, domain, base: Some(base) }
 }
 
 impl Quantity {
+    /// Its unit in words; none for pure numbers.
+    #[must_use]
+    pub fn unit_words(&self) -> Option<&'static str> {
+        unit_words(self.unit)
+    }
+
     /// Looks a quantity up by its id.
     #[must_use]
     pub fn find(id: &str) -> Option<&'static Quantity> {

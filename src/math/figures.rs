@@ -38,6 +38,15 @@ pub fn significant(x: impl Borrow<f64>, digits: usize) -> String {
     format!("{x:.*e}", digits.max(1) - 1).parse().map_or_else(|_| exact(x), |rounded: f64| exact(rounded))
 }
 
+/// The number that was meant by one that is written with all digits of a f32, as programs do that compute in f32:
+/// 0.4399999976158142 is the f32 nearest 0.44, and becomes 0.44. It moves by less than half a step of f32; others stay.
+#[must_use]
+pub fn meant(x: f64) -> f64 {
+    #[allow(clippy::cast_possible_truncation, reason = "is it a f32?")]
+    let single = x as f32;
+    if f64::from(single).to_bits() == x.to_bits() { single.to_string().parse().unwrap_or(x) } else { x }
+}
+
 /// Is it readable without an exponent?
 fn is_plain(x: f64) -> bool {
     (1e-4..1e7).contains(&x.abs())
@@ -45,7 +54,28 @@ fn is_plain(x: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{exact, short};
+    use super::{exact, meant, short};
+
+    #[test]
+    fn a_f32_with_all_its_digits_is_the_number_that_was_meant() {
+        // literals as Blender writes them, and numbers that are no f32 or are the same in both
+        let cases = [
+            (0.4399999976158142, 0.44),
+            (0.800000011920929, 0.8),
+            (1.4500000476837158, 1.45),
+            (400.29998779296875, 400.3),
+            (-0.30000001192092896, -0.3),
+            (0.44, 0.44),
+            (0.5, 0.5),
+            (1.0 / 3.0, 1.0 / 3.0),
+            (0.439999997615814, 0.439999997615814),
+            (16_777_216.0, 16_777_216.0),
+            (f64::MAX, f64::MAX),
+        ];
+        for (x, expected) in cases {
+            assert_eq!(meant(x).to_bits(), f64::to_bits(expected), "{x}");
+        }
+    }
 
     #[test]
     fn what_is_given_is_told_as_it_was_given() {

@@ -76,15 +76,19 @@ pub enum Event<'a> {
         /// Seconds spent.
         seconds: f64,
     },
-    /// Texels are done. Not part of the JSON stream.
+    /// Steps of a phase of a table are done. Not part of the JSON stream.
     #[serde(skip)]
     TableProgress {
         /// Table name.
         table: &'a str,
         /// Its number in the plan.
         index: usize,
-        /// Texels done.
+        /// What it is going through.
+        phase: Phase,
+        /// Steps done.
         done: usize,
+        /// Steps in all; 0 where that is not known before the end.
+        steps: usize,
     },
     /// A table is baked, verified and encoded (not yet written).
     TableFinished {
@@ -200,6 +204,8 @@ pub enum Event<'a> {
         tables: usize,
         /// Number of maps.
         maps: usize,
+        /// Where they are.
+        folder: &'a Path,
         /// Files that are new or changed.
         written: usize,
         /// Files that had the same bytes already.
@@ -211,6 +217,35 @@ pub enum Event<'a> {
         /// Seconds in all.
         seconds: f64,
     },
+}
+
+/// What a table goes through, and what its steps are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// Its size is searched; nobody knows how many tables will be tried.
+    Size,
+    /// Texels are integrated.
+    Bake,
+    /// Laws are checked.
+    Laws,
+    /// Texels are fitted to the reader: points of the truth.
+    Fit,
+    /// What is read between the texels: points that are compared.
+    Between,
+}
+
+impl Phase {
+    /// In a word or two.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Phase::Size => "size",
+            Phase::Bake => "bake",
+            Phase::Laws => "laws",
+            Phase::Fit => "fit",
+            Phase::Between => "between texels",
+        }
+    }
 }
 
 /// A table of the plan.
@@ -347,13 +382,14 @@ impl<'a> Event<'a> {
         Event::Plan { recipe: &plan.name, tables, maps: plan.maps.iter().map(map).collect() }
     }
 
-    pub(super) fn summary(outcome: &Outcome, seconds: f64) -> Event<'static> {
+    pub(super) fn summary(outcome: &Outcome, folder: &'a Path, seconds: f64) -> Event<'a> {
         let manifest = &outcome.manifest;
         let tables = manifest.tables.iter().flat_map(|t| &t.files).map(|f| f.bytes);
         let maps = manifest.maps.iter().flat_map(|m| &m.files).map(|f| f.bytes);
         Event::Summary {
             tables: manifest.tables.len(),
             maps: manifest.maps.len(),
+            folder,
             written: outcome.written,
             unchanged: outcome.unchanged,
             kept: outcome.kept,

@@ -1,7 +1,7 @@
 //! Texels fitted to the reader: the truth at a fine grid of points, and the values that read closest to it.
 
 use super::PipelineError;
-use crate::cancel::Cancel;
+use crate::cancel::{Cancel, Steps, Tell};
 use crate::grid::fit::{Objective, Samples, places, places_count};
 use crate::grid::layout::Point;
 use crate::grid::{Grid, Table};
@@ -105,6 +105,7 @@ pub(super) fn fit(
     tolerance: f64,
     quick: bool,
     cancel: &Cancel,
+    tell: &Tell<'_>,
 ) -> Result<Fitted, PipelineError> {
     let grid = &table.grid;
     let choices: &[(usize, usize)] = if quick { &PER_CELL_QUICK } else { &PER_CELL };
@@ -114,15 +115,18 @@ pub(super) fn fit(
         points: places_count(grid, 2),
         limit: LIMIT,
     })?;
+    let places = places(grid, per_cell);
+    let steps = Steps::new(places.len(), tell);
     let truth = |(x, area): &([f64; crate::grid::layout::MAX_AXES], f64)| {
         if cancel.is_set() {
             return None;
         }
         let point = grid.at_coordinates(x);
         let value = bound.baker.texel(point.values(), tolerance).ok()?.value;
+        steps.one();
         Some((point, *area, value))
     };
-    let truth: Vec<(Point, f64, Sums)> = places(grid, per_cell).par_iter().filter_map(truth).collect();
+    let truth: Vec<(Point, f64, Sums)> = places.par_iter().filter_map(truth).collect();
     cancel.check()?;
     let samples = Samples::new(grid, truth.iter().map(|(p, area, _)| (p, *area)));
     let n = table.channels.len();

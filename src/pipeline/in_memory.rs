@@ -3,7 +3,7 @@
 use super::gather::Written;
 use super::table::{self, Checked, Readings};
 use super::{PipelineError, size};
-use crate::cancel::Cancel;
+use crate::cancel::{Cancel, untold};
 use crate::grid::{Provenance, Table};
 use crate::plan::{Output, Plan, PlanError, PlannedTable, TableRequest};
 use crate::verify::Finding;
@@ -70,7 +70,7 @@ pub fn bake_until(cancel: &Cancel, asked: TableRequest) -> Result<Baked, InMemor
         planned = size::resolve(&planned, sizing, cancel)?;
     }
     let table = table::bake(&planned, cancel, &|_| {})?;
-    let checked = table::check(&name, &planned, table, cancel)?;
+    let checked = table::check(&name, &planned, table, cancel, &untold)?;
     Ok(Baked { planned, checked })
 }
 

@@ -24,6 +24,7 @@ mod memory_map;
 pub mod pages;
 #[cfg(all(feature = "report", feature = "scene"))]
 pub mod preview;
+mod reached;
 pub mod recheck;
 mod size;
 pub mod suggest;
@@ -38,9 +39,10 @@ pub mod write_scene;
 pub use crate::plan::MANIFEST;
 pub use again::{CACHE_LIMIT, Cache, CacheSize, From};
 pub use companion::{Companion, Seen};
-pub use event::{Event, Extremum, MapPlanEntry, PlanEntry, Progress, Silent};
+pub use event::{Event, Extremum, MapPlanEntry, Phase, PlanEntry, Progress, Silent};
 pub use in_memory::{Baked, InMemoryError, bake, bake_until};
 pub use manifest::{FileRecord, Manifest, TableRecord};
+pub use reached::Reached;
 pub use threads::{MOST_THREADS, pool};
 pub use transaction::Recovery;
 
@@ -112,8 +114,8 @@ pub enum PipelineError {
     },
     /// No size reaches the error that was asked for.
     #[error(
-        "table {table}: no table with axes up to {longest} reads to within {asked:e}; the best reached {reached:e}. Ask for a larger \
-         error, allow `longest` or `warps = \"search\"`, store it in more bits, or move an axis off the corner where it bends"
+        "table {table}: no table with axes up to {longest} reads to within {asked:e}; {reached}. To mend it, {}",
+        reached::remedy(*searched, *longer)
     )]
     Size {
         /// Table name.
@@ -122,8 +124,12 @@ pub enum PipelineError {
         asked: f64,
         /// Longest axis.
         longest: usize,
-        /// Least error of all trials.
-        reached: f64,
+        /// How near it came.
+        reached: Reached,
+        /// Were other warps tried?
+        searched: bool,
+        /// Could axes be longer?
+        longer: bool,
     },
     /// Too many points to fit texels to.
     #[error(
@@ -324,7 +330,7 @@ pub fn run_with(
     let kept = work.kept;
     let written = files.commit(&manifest.to_bytes())?;
     let outcome = Outcome { manifest, written: written.written, unchanged: written.unchanged, kept };
-    progress.event(&Event::summary(&outcome, start.elapsed().as_secs_f64()));
+    progress.event(&Event::summary(&outcome, &settings.out, start.elapsed().as_secs_f64()));
     Ok(outcome)
 }
 

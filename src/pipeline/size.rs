@@ -8,9 +8,10 @@
 //!
 //! Other warps, where the recipe allows them, are ranked by two lengths of each axis; the best few are searched in full.
 
+use super::reached::Reached;
 use super::texels::Source;
 use super::{PipelineError, fit};
-use crate::cancel::Cancel;
+use crate::cancel::{Cancel, untold};
 use crate::encode::Storage;
 use crate::grid::layout::{Point, combination};
 use crate::grid::provenance::SizeRecord;
@@ -21,6 +22,7 @@ use crate::tables::Bound;
 use crate::verify::reconstruction::{Probe, in_practical_domain};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Lengths that are tried.
 const LENGTHS: [usize; 20] =
@@ -70,7 +72,9 @@ pub(super) fn resolve(
         table: planned.name().to_owned(),
         asked: sizing.error,
         longest: sizing.longest,
-        reached: *search.least.lock().unwrap_or_else(std::sync::PoisonError::into_inner),
+        reached: *search.least(),
+        searched: sizing.warps,
+        longer: LENGTHS.iter().any(|l| *l > sizing.longest),
     })?;
     let record = SizeRecord {
         error: sizing.error,
@@ -95,8 +99,8 @@ struct Search<'a> {
     tolerance: f64,
     cancel: &'a Cancel,
     trials: AtomicUsize,
-    /// Least error of all full trials.
-    least: std::sync::Mutex<f64>,
+    /// What came nearest.
+    least: Mutex<Reached>,
 }
 
 impl<'a> Search<'a> {
@@ -113,8 +117,12 @@ impl<'a> Search<'a> {
             tolerance: (SHARE * sizing.error).max(1e-12),
             cancel,
             trials: 0.into(),
-            least: f64::INFINITY.into(),
+            least: Mutex::default(),
         })
+    }
+
+    fn least(&self) -> MutexGuard<'_, Reached> {
+        self.least.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn axes(&self) -> &[Axis] {
@@ -234,7 +242,9 @@ impl<'a> Search<'a> {
         let texels = self.planned.asked.texels;
         let fitted = match texels.are_exact() {
             true => None,
-            false => Some(fit::fit(self.planned, &bound, &table, self.tolerance, quick, self.cancel)?),
+            false => {
+                Some(fit::fit(self.planned, &bound, &table, self.tolerance, quick, self.cancel, &untold)?)
+            }
         };
         let probe = Probe::until(self.cancel, &bound, self.tolerance, COMPARED);
         let source = Source {
@@ -252,9 +262,8 @@ impl<'a> Search<'a> {
             let spread = if self.sizing.practical { measured.practical.as_ref() } else { None };
             worst = worst.max(spread.unwrap_or(&measured.whole).largest.value);
         }
-        let mut least = self.least.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         self.cancelled()?;
-        *least = least.min(worst);
+        self.least().trial(worst);
         Ok(worst)
     }
 
@@ -268,14 +277,22 @@ impl<'a> Search<'a> {
                 continue;
             }
             let mut list = Vec::new();
+            let mut best: Option<(f64, usize)> = None;
             for len in LENGTHS.into_iter().filter(|l| *l <= self.sizing.longest) {
                 let error = self.axis_error(set, i, len)?;
+                if best.is_none_or(|(least, _)| error < least) {
+                    best = Some((error, len));
+                }
                 if error <= self.hope() {
                     list.push((len, error));
                 }
                 if error <= 0.2 * self.sizing.error {
                     break;
                 }
+            }
+            if let Some((error, len)) = best.filter(|_| list.is_empty()) {
+                self.least().alone(axis.quantity.id, len, error);
+                return Ok(None);
             }
             choices.push(list);
         }

@@ -5,7 +5,7 @@
 //! layout `factored`, which both decode to the same. What takes the fewest bytes is written as a recipe, and that
 //! recipe is baked and measured: the numbers are those of the text that is printed.
 
-use super::{PipelineError, Silent, size, table};
+use super::{PipelineError, Reached, Silent, size, table};
 use crate::cancel::Cancel;
 use crate::encode::code::reader::{self, Decode};
 use crate::encode::{self, FileOption, Storage};
@@ -121,20 +121,19 @@ fn one(
     result.own = measured(&own, planned);
     let search = Search { planned, want, language, cancel };
     let output = planned.outputs.first().cloned().unwrap_or_else(Output::preset);
-    let mut least = f64::INFINITY;
+    let mut least = Reached::default();
     result.found = search.best(&output, &mut least)?;
     let float = matches!(output.storage, Storage::Half | Storage::Float | Storage::Double);
     if result.found.is_none() && !float {
         let finer = finer(planned.bound.spec.layout.channels.len());
-        result.notes.push(format!("as {output}, {}: stored as {finer} instead", reached(least)));
+        result.notes.push(format!("as {output}, {least}: stored as {finer} instead"));
         result.found = search.best(&finer, &mut least)?;
     }
     if result.found.is_none() {
         let domain = if want.practical { "practical" } else { "whole" };
         let (longest, error) = (want.longest, want.error);
         result.notes.push(format!(
-            "no table with axes up to {longest} reads to within {error:e} over the {domain} domain; {}",
-            reached(least)
+            "no table with axes up to {longest} reads to within {error:e} over the {domain} domain; {least}"
         ));
     } else {
         result.notes.push(format!("roughness below {LEAST_ROUGHNESS} reads as {LEAST_ROUGHNESS}"));
@@ -147,15 +146,6 @@ fn one(
     Ok(result)
 }
 
-/// The least error of all trials, in words.
-fn reached(least: f64) -> String {
-    if least.is_finite() {
-        format!("the best reached {least:.1e}")
-    } else {
-        "one axis alone leaves more than that at every length".to_owned()
-    }
-}
-
 struct Search<'a> {
     planned: &'a PlannedTable,
     want: Want,
@@ -165,13 +155,13 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// The smallest of all candidates; `least` becomes the least error of those that fail.
-    fn best(&self, output: &Output, least: &mut f64) -> Result<Option<Found>, PipelineError> {
+    fn best(&self, output: &Output, least: &mut Reached) -> Result<Option<Found>, PipelineError> {
         let mut best: Option<Found> = None;
         for (channels, decode) in candidates(self.planned, output) {
             let found = match self.sized(channels, output) {
                 Ok(request) => self.bake(&request, decode)?,
                 Err(PipelineError::Size { reached, .. }) => {
-                    *least = least.min(reached);
+                    *least = least.nearer(reached);
                     continue;
                 }
                 Err(e) => return Err(e),

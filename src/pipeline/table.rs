@@ -7,8 +7,8 @@ use super::fit::{self, Fitted};
 use super::gather::{Part, Written};
 use super::manifest::tool;
 use super::texels::{Chosen, Source};
-use super::{Event, Extremum, FileRecord, PipelineError, Progress, TableRecord, size};
-use crate::cancel::Cancel;
+use super::{Event, Extremum, FileRecord, Phase, PipelineError, Progress, TableRecord, size};
+use crate::cancel::{Cancel, Tell, untold};
 use crate::encode::{EncodeInput, Label, Unstored};
 use crate::grid::provenance::{AxisRecord, Encoding, Integration, RecipeId, SCHEMA, SizeRecord, Subject};
 use crate::grid::{Provenance, Table};
@@ -43,6 +43,12 @@ pub(super) fn make(
 ) -> Result<Made, PipelineError> {
     let name = planned.name();
     let start = Instant::now();
+    let telling = |phase| {
+        move |done, steps| progress.event(&Event::TableProgress { table: name, index, phase, done, steps })
+    };
+    if planned.asked.size.is_some() {
+        telling(Phase::Size)(0, 0);
+    }
     let sized = match &planned.asked.size {
         Some(sizing) => Some(size::resolve(planned, sizing, cancel)?),
         None => None,
@@ -54,11 +60,12 @@ pub(super) fn make(
     let spec = &planned.bound.spec;
     progress.event(&Event::TableStarted { table: name, index, texels: spec.grid.len() });
     let start = Instant::now();
-    let tick = |done| progress.event(&Event::TableProgress { table: name, index, done });
-    let table = bake(planned, cancel, &tick)?;
+    let (tick, texels) = (telling(Phase::Bake), spec.grid.len());
+    let table = bake(planned, cancel, &|done| tick(done, texels))?;
     let bake_seconds = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let Checked { verified, warnings, provenance } = check(&plan.name, planned, table, cancel)?;
+    let Checked { verified, warnings, provenance } =
+        check(&plan.name, planned, table, cancel, &telling(Phase::Laws))?;
     for finding in &warnings {
         progress.event(&Event::Finding { table: name, finding });
     }
@@ -74,7 +81,8 @@ pub(super) fn make(
     };
     let mut stored = None;
     let names = planned.files();
-    let readings = Readings::new(planned, verified.table(), cancel)?;
+    let tell = [&telling(Phase::Fit) as &Tell<'_>, &telling(Phase::Between)];
+    let readings = Readings::telling(planned, verified.table(), cancel, tell)?;
     for (output, file) in planned.outputs.iter().zip(names) {
         let source = readings.source(planned, verified.table(), cancel);
         let kept = if keep && stored.is_none() { Some(&mut stored) } else { None };
@@ -116,9 +124,16 @@ pub(super) fn check(
     planned: &PlannedTable,
     table: Table,
     cancel: &Cancel,
+    tell: &Tell<'_>,
 ) -> Result<Checked, PipelineError> {
-    let checked =
-        verify::check_until(cancel, &planned.bound, table, planned.tolerance, &planned.asked.waivers)?;
+    let checked = verify::check_telling(
+        cancel,
+        &planned.bound,
+        table,
+        planned.tolerance,
+        &planned.asked.waivers,
+        tell,
+    )?;
     let (verified, warnings) = checked.map_err(PipelineError::Laws)?;
     let provenance = provenance(plan, planned, &verified);
     Ok(Checked { verified, warnings, provenance })
@@ -136,13 +151,24 @@ impl<'a> Readings<'a> {
         table: &Table,
         cancel: &'a Cancel,
     ) -> Result<Readings<'a>, PipelineError> {
+        Readings::telling(planned, table, cancel, [&untold; 2])
+    }
+
+    /// The same, telling of the points of the fit and of those between the texels.
+    fn telling(
+        planned: &'a PlannedTable,
+        table: &Table,
+        cancel: &'a Cancel,
+        [fit, between]: [&Tell<'_>; 2],
+    ) -> Result<Readings<'a>, PipelineError> {
         // the laws are those of the integrals; what is fitted to them is judged by how it reads
         let fitted = match planned.asked.texels.are_exact() {
             true => None,
-            false => Some(fit::fit(planned, &planned.bound, table, planned.tolerance, false, cancel)?),
+            false => Some(fit::fit(planned, &planned.bound, table, planned.tolerance, false, cancel, fit)?),
         };
-        let probe =
-            planned.reconstruction.then(|| Probe::until(cancel, &planned.bound, planned.tolerance, COMPARED));
+        let probe = planned
+            .reconstruction
+            .then(|| Probe::telling(cancel, &planned.bound, planned.tolerance, COMPARED, between));
         Ok(Readings { fitted, probe })
     }
 

@@ -45,6 +45,7 @@ pub struct RecipeError {
     /// Further faults that are not listed.
     pub hidden: usize,
     text: String,
+    styled: String,
 }
 
 impl fmt::Display for RecipeError {
@@ -59,6 +60,12 @@ impl RecipeError {
     /// A fault of the file as a whole.
     pub(super) fn of_file(file: &str, fault: Fault) -> RecipeError {
         collect("", file, vec![(0..0, String::new(), fault)], 0)
+    }
+
+    /// The same text with colours, for a terminal.
+    #[must_use]
+    pub fn styled(&self) -> &str {
+        &self.styled
     }
 
     /// A file that is not UTF-8 from byte `at` on; `valid` is the text before.
@@ -101,7 +108,7 @@ fn collect(
     list.sort_by_key(|(span, ..)| span.start);
     let hidden = dropped + list.len().saturating_sub(SHOWN);
     list.truncate(SHOWN);
-    let mut text = String::new();
+    let (mut text, mut styled) = (String::new(), String::new());
     let mut diagnostics = Vec::with_capacity(list.len());
     for (span, key, fault) in list {
         let line = Line::around(source, &span);
@@ -114,16 +121,20 @@ fn collect(
             remedy: fault.remedy().map(plain),
             fault,
         };
-        if !text.is_empty() {
-            text.push_str("\n\n");
+        for (text, renderer) in [(&mut text, Renderer::plain()), (&mut styled, Renderer::styled())] {
+            if !text.is_empty() {
+                text.push_str("\n\n");
+            }
+            text.push_str(&render(file, &line, &d, &renderer));
         }
-        text.push_str(&render(file, &line, &d));
         diagnostics.push(d);
     }
     if hidden > 0 {
-        text.push_str(&format!("\n\nand {hidden} more"));
+        let more = format!("\n\nand {hidden} more");
+        text.push_str(&more);
+        styled.push_str(&more);
     }
-    RecipeError { file: file.to_owned(), diagnostics, hidden, text }
+    RecipeError { file: file.to_owned(), diagnostics, hidden, text, styled }
 }
 
 /// One line of text without control characters, whatever the file holds.
@@ -162,7 +173,7 @@ fn boundary(source: &str, at: usize) -> usize {
     at
 }
 
-fn render(file: &str, line: &Line<'_>, d: &Diagnostic) -> String {
+fn render(file: &str, line: &Line<'_>, d: &Diagnostic, renderer: &Renderer) -> String {
     let file: String = file.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
     let mark = AnnotationKind::Primary.span(line.span.clone()).label(d.allowed.as_deref());
     let snippet = Snippet::source(line.text).line_start(line.number).path(file.as_str()).annotation(mark);
@@ -170,5 +181,5 @@ fn render(file: &str, line: &Line<'_>, d: &Diagnostic) -> String {
     if let Some(remedy) = &d.remedy {
         group = group.element(Level::HELP.message(remedy.as_str()));
     }
-    Renderer::plain().render(&[group])
+    renderer.render(&[group])
 }

@@ -3,6 +3,7 @@
 //! What cannot be read is a fault here, and a hole in the request. Lists are then shorter in the request than in the file, so
 //! [`Origins`] leads from a place in the requests back to the one in the file.
 
+use super::keys::{ROOT, TABLE, WAIVE};
 use super::section::{Section, wrong};
 use super::{index_file, read_axis, read_map, read_size};
 use crate::grid::Axis;
@@ -22,27 +23,6 @@ use crate::tables::spec::Request;
 use serde_json::{Map, Value as Json};
 use std::path::Path as File;
 use toml::de::DeTable;
-
-const ROOT: &[&str] = &["name", "tolerance", "engine", "table", "map"];
-const TABLE: &[&str] = &[
-    "kind",
-    "name",
-    "file",
-    "before",
-    "after",
-    "layout",
-    "channels",
-    "model",
-    "params",
-    "tolerance",
-    "outputs",
-    "on-miss",
-    "reconstruction",
-    "size",
-    "texels",
-    "waive",
-    "axis",
-];
 
 /// A recipe before it is resolved. What could not be read is none, or a hole, and a fault has been reported for it.
 #[derive(Debug, Default)]
@@ -103,11 +83,7 @@ impl Origins {
 
 /// Reads the keys of a file. The images of its maps lie in `folder`.
 pub(super) fn read(root: &DeTable<'_>, folder: &File, faults: &mut Faults) -> Document {
-    let section = Section::new(root, &Path::root(), "the recipe", ROOT, faults);
-    section.require("name", "name = \"my-tables\"", faults);
-    if section.get("engine").is_none() && section.get("map").is_none() {
-        section.require("table", "[[table]]", faults);
-    }
+    let section = Section::new(root, &Path::root(), &ROOT, faults);
     let mut document = Document {
         name: section.text("name", faults),
         tolerance: section.number("tolerance", faults),
@@ -172,9 +148,7 @@ fn number(path: &Path) -> usize {
 }
 
 fn entry(table: &DeTable<'_>, path: Path, folder: &File, faults: &mut Faults) -> (Draft, Origin) {
-    let section = Section::new(table, &path, "[[table]]", TABLE, faults);
-    section.require("kind", "kind = \"dfg\"", faults);
-    section.require("name", "name = \"ggx-dfg\"", faults);
+    let section = Section::new(table, &path, &TABLE, faults);
     let (name, kind) = (section.text("name", faults), section.text("kind", faults));
     let mut size = read_size::read(&section, faults);
     let mut holes = Holes { name: name.is_none(), kind: kind.is_none(), ..Holes::default() };
@@ -323,9 +297,7 @@ fn waivers(section: &Section<'_>, faults: &mut Faults) -> Numbered<Waiver> {
     let expected = "a list, such as [{ law = \"energy\", reason = \"...\" }]";
     let mut waivers = Vec::new();
     for (path, table) in section.tables("waive", expected, faults).unwrap_or_default() {
-        let waiver = Section::new(table, &path, "waive", &["law", "reason"], faults);
-        waiver.require("law", "law = \"energy\"", faults);
-        waiver.require("reason", "reason = \"why this table may break it\"", faults);
+        let waiver = Section::new(table, &path, &WAIVE, faults);
         let (law, reason) = (waiver.text("law", faults), waiver.text("reason", faults));
         waivers.push((number(&path), law.zip(reason).map(|(law, reason)| Waiver { law, reason })));
     }

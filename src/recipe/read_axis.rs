@@ -1,5 +1,6 @@
 //! `[[table.axis]]` to an [`Axis`]. Ranges are checked later, by the axis itself.
 
+use super::keys::{AXIS, COUPLED, SEARCHED, WARP};
 use super::section::{Section, as_number, wrong};
 use crate::grid::quantity::QUANTITIES;
 use crate::grid::{Axis, Direction, Quantity, Texel, Warp};
@@ -9,9 +10,8 @@ use crate::plan::faults::Faults;
 use crate::plan::sizing::PROVISIONAL;
 use toml::de::{DeTable, DeValue};
 
-const KEYS: &[&str] = &["id", "length", "domain", "warp", "texel", "direction", "offset", "clamp"];
 /// Warps that have a name.
-const WORDS: &[(&str, Warp)] = &[
+pub(super) const WORDS: &[(&str, Warp)] = &[
     ("linear", Warp::Linear),
     ("sqrt", Warp::Power(0.5)),
     ("square", Warp::Power(2.0)),
@@ -21,11 +21,7 @@ const WORDS: &[(&str, Warp)] = &[
 /// Reads an axis; none if its quantity or its length cannot be read.
 /// `searched`: its length will be found.
 pub(super) fn read(table: &DeTable<'_>, path: &Path, searched: bool, faults: &mut Faults) -> Option<Axis> {
-    let section = Section::new(table, path, "[[table.axis]]", KEYS, faults);
-    section.require("id", "id = \"mu\"", faults);
-    if !searched {
-        section.require("length", "length = 64", faults);
-    }
+    let section = Section::new(table, path, if searched { &SEARCHED } else { &AXIS }, faults);
     let quantity = section.text("id", faults).and_then(|id| {
         let found = Quantity::find(&id);
         if found.is_none() {
@@ -71,12 +67,7 @@ fn warp(section: &Section<'_>, faults: &mut Faults) -> Option<Warp> {
 
 fn warp_table(table: &DeTable<'_>, path: &Path, faults: &mut Faults) -> Option<Warp> {
     let coupled = table.contains_key("coupled");
-    let keys: &[&str] = if coupled {
-        &["coupled", "power", "scale", "exponent"]
-    } else {
-        &["power", "one-minus-power", "coupled"]
-    };
-    let section = Section::new(table, path, "warp", keys, faults);
+    let section = Section::new(table, path, if coupled { &COUPLED } else { &WARP }, faults);
     if coupled {
         let to = section.text("coupled", faults);
         let mut number = |key, default| match section.get(key) {

@@ -1,5 +1,6 @@
 //! `[[map]]`: the keys of a map, each of its type. What they mean together is judged by the plan.
 
+use super::keys::{FROM, MAP, NORMAL, ROUGHNESS};
 use super::read_sbrdf;
 use super::section::{Section, as_number, wrong};
 use crate::functions::conversion::{By, CONVERSIONS, Conversion};
@@ -14,32 +15,12 @@ use crate::plan::map::{
 use std::path::Path as File;
 use toml::de::{DeTable, DeValue};
 
-const MAP: &[&str] = &[
-    "name",
-    "normal",
-    "roughness",
-    "sbrdf",
-    "packing",
-    "factor",
-    "rule",
-    "normals",
-    "shape",
-    "effort",
-    "objective",
-    "outputs",
-    "check",
-    "compare",
-];
-const NORMAL: &[&str] = &["file", "channels", "green", "z", "scale", "signed", "wrap", "mend", "resample"];
-const ROUGHNESS: &[&str] = &["file", "channel", "space", "holds", "from"];
-const FROM: &[&str] = &["lobe", "range", "log", "rule", "second", "angle"];
 const SWITCH: [(&str, bool); 2] = [("on", true), ("off", false)];
 
 /// Reads a map whose images lie in `folder`.
 pub(super) fn read(table: &DeTable<'_>, path: &Path, folder: &File, faults: &mut Faults) -> MapDraft {
     let before = faults.len();
-    let section = Section::new(table, path, "[[map]]", MAP, faults);
-    section.require("name", "name = \"bark\"", faults);
+    let section = Section::new(table, path, &MAP, faults);
     let name = section.text("name", faults);
     let named = faults.len();
     let normal =
@@ -90,7 +71,6 @@ pub(super) fn set<T>(to: &mut T, value: Option<T>) {
 
 /// The file of an image, relative to the folder of the recipe.
 pub(super) fn image_of(section: &Section<'_>, folder: &File, faults: &mut Faults) -> Option<Source> {
-    section.require("file", "file = \"bark.png\"", faults);
     section.text("file", faults).map(|name| Source::File(folder.join(name)))
 }
 
@@ -105,7 +85,7 @@ fn normal(value: &DeValue<'_>, path: &Path, folder: &File, faults: &mut Faults) 
         );
         return None;
     };
-    let section = Section::new(table, path, "normal", NORMAL, faults);
+    let section = Section::new(table, path, &NORMAL, faults);
     let mut input = Input::new(image_of(&section, folder, faults)?);
     let Convention { green_down, derive_z, scale, mend } = &mut input.convention;
     set(green_down, section.word("green", &[("up", false), ("down", true)], faults));
@@ -174,7 +154,7 @@ fn roughness(value: &DeValue<'_>, path: &Path, folder: &File, faults: &mut Fault
         faults.value(path.clone(), wrong("roughness", value, expected));
         return None;
     };
-    let section = Section::new(table, path, "roughness", ROUGHNESS, faults);
+    let section = Section::new(table, path, &ROUGHNESS, faults);
     let image = image_of(&section, folder, faults)?;
     let channel = section.text("channel", faults).unwrap_or_else(|| "G".to_owned());
     let space = section.word("space", &words::SPACES, faults).unwrap_or(Space::Linear);
@@ -189,9 +169,7 @@ fn from(value: &DeValue<'_>, path: &Path, faults: &mut Faults) -> Option<FromLob
         faults.value(path.clone(), wrong("from", value, expected));
         return None;
     };
-    let section = Section::new(table, path, "from", FROM, faults);
-    section.require("lobe", "lobe = \"blinn-phong\"", faults);
-    section.require("range", "range = [1, 1024]", faults);
+    let section = Section::new(table, path, &FROM, faults);
     let lobes: Vec<(&'static str, &'static Conversion)> = CONVERSIONS.iter().map(|c| (c.id, c)).collect();
     let conversion = section.word("lobe", &lobes, faults);
     let range = section.pair("range", faults);

@@ -1,5 +1,6 @@
 //! `sbrdf` of a `[[map]]`: the keys of lobes, each of its type.
 
+use super::keys::{COLOUR, NUMBER, SBRDF};
 use super::read_map::{image_of, set};
 use super::section::{Section, as_number, wrong};
 use crate::picture::Space;
@@ -10,10 +11,6 @@ use crate::plan::map::sbrdf::{BASE, BRDF, ColourInput, METALLIC, MODEL, NumberIn
 use crate::plan::map::{SbrdfRequest, Source, words};
 use std::path::Path as File;
 use toml::de::DeValue;
-
-const SBRDF: &[&str] = &["model", "lobes", "residual", "normalise", BASE, METALLIC, BRDF];
-const COLOUR: &[&str] = &["file", "space"];
-const NUMBER: &[&str] = &["file", "channel"];
 
 pub(super) fn sbrdf(
     value: &DeValue<'_>,
@@ -27,8 +24,7 @@ pub(super) fn sbrdf(
         faults.value(path.clone(), wrong("sbrdf", value, expected));
         return None;
     };
-    let section = Section::new(table, path, "sbrdf", SBRDF, faults);
-    section.require("model", "model = \"lafortune\"", faults);
+    let section = Section::new(table, path, &SBRDF, faults);
     let _: Option<()> = section.word("model", &[(MODEL, ())], faults);
     let mut out = SbrdfRequest::default();
     set(&mut out.lobes, section.count("lobes", faults));
@@ -85,7 +81,7 @@ fn colour(
         faults.value(path, wrong(BASE, value, EXPECTED));
         return None;
     };
-    let own = Section::new(table, &path, BASE, COLOUR, faults);
+    let own = Section::new(table, &path, &COLOUR, faults);
     let image = image_of(&own, folder, faults)?;
     let space = own.word("space", &words::SPACES, faults).unwrap_or(Space::Srgb);
     Some(ColourInput::Image { image, space })
@@ -104,7 +100,7 @@ fn number(value: &DeValue<'_>, path: &Path, folder: &File, faults: &mut Faults) 
         let image = Source::File(folder.join(name));
         return Some(NumberInput::Image { image, channel: "B".to_owned() });
     };
-    let own = Section::new(table, path, METALLIC, NUMBER, faults);
+    let own = Section::new(table, path, &NUMBER, faults);
     let image = image_of(&own, folder, faults)?;
     let channel = own.text("channel", faults).unwrap_or_else(|| "B".to_owned());
     Some(NumberInput::Image { image, channel })

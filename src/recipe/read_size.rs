@@ -6,6 +6,7 @@
 //! ```
 //! Axes that have a `length` keep it; the others are searched. `warps = "search"` also tries other warps on those.
 
+use super::keys::SIZE;
 use super::section::{Section, wrong};
 use crate::plan::Sizing;
 use crate::plan::fault::unknown_word;
@@ -22,8 +23,7 @@ pub(super) fn read(section: &Section<'_>, faults: &mut Faults) -> Option<Sizing>
         }
         DeValue::Table(table) => {
             let path = section.path("size");
-            let keys = &["error", "domain", "warps", "longest"];
-            let size = Section::new(table, &path, "size", keys, faults);
+            let size = Section::new(table, &path, &SIZE, faults);
             let preset = Sizing::default();
             Some(Sizing {
                 error: size.number("error", faults).unwrap_or(preset.error),

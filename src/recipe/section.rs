@@ -1,5 +1,6 @@
 //! One section of a recipe file: its known keys, read by type. A value of the wrong type is a fault and reads as none.
 
+use super::keys::{Is, Keys, Need};
 use crate::math::shown::show;
 use crate::plan::fault::{Fault, slip, unknown_word};
 use crate::plan::faults::Faults;
@@ -8,7 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// Most characters of a text.
-const LONGEST_TEXT: usize = LONGEST_REASON;
+pub(super) const LONGEST_TEXT: usize = LONGEST_REASON;
 
 /// Most bytes of the text round the numbers of a file.
 pub(super) const LONGEST_AROUND: usize = 1 << 16;
@@ -18,29 +19,41 @@ pub(super) const LONGEST_AROUND: usize = 1 << 16;
 pub(super) struct Section<'a> {
     table: &'a DeTable<'a>,
     path: Path,
-    /// As written in the file: `[[table.axis]]`.
-    name: &'static str,
+    keys: &'static Keys,
 }
 
 impl<'a> Section<'a> {
-    /// Takes a table and reports the keys that it should not have.
+    /// Takes a table and reports the keys that it should not have, and those that are not there and should be.
     pub(super) fn new(
         table: &'a DeTable<'a>,
         path: &Path,
-        name: &'static str,
-        keys: &[&str],
+        keys: &'static Keys,
         faults: &mut Faults,
     ) -> Section<'a> {
-        for key in table.keys().map(Spanned::get_ref).filter(|k| !keys.contains(&k.as_ref())) {
+        let there = |id: &str| table.contains_key(id);
+        for key in table.keys().map(Spanned::get_ref).filter(|k| !keys.ids().any(|id| id == k.as_ref())) {
             let fault = Fault::UnknownKey {
                 key: show(key),
-                section: name,
-                allowed: keys.join(", "),
-                suggestion: slip(key, keys.iter().copied()),
+                section: keys.name,
+                allowed: keys.ids().collect::<Vec<_>>().join(", "),
+                suggestion: slip(key, keys.ids()),
             };
             faults.key(path.key(key), fault);
         }
-        Section { table, path: path.clone(), name }
+        for key in keys.keys.iter().filter(|k| !there(k.id) && !keys.free.contains(&k.id)) {
+            let example = match key.need {
+                Need::Always(example) => example,
+                Need::Unless(others, example) if !others.iter().any(|id| there(id)) => example,
+                _ => continue,
+            };
+            faults.value(path.clone(), Fault::MissingKey { section: keys.name, key: key.id, example });
+        }
+        Section { table, path: path.clone(), keys }
+    }
+
+    /// Is the key read as the list of keys has it? Else the schema would not be that of the reader.
+    fn asks(&self, key: &str, such: impl Fn(&Is) -> bool) {
+        debug_assert!(self.keys.takes(key, &such), "{}: `{key}` is read as something else", self.keys.name);
     }
 
     /// Path of a key.
@@ -53,15 +66,9 @@ impl<'a> Section<'a> {
         self.table.get(key).map(Spanned::get_ref)
     }
 
-    /// Reports a key that is not there.
-    pub(super) fn require(&self, key: &'static str, example: &'static str, faults: &mut Faults) {
-        if self.get(key).is_none() {
-            faults.value(self.path.clone(), Fault::MissingKey { section: self.name, key, example });
-        }
-    }
-
     /// A text of 1 to [`LONGEST_TEXT`] characters.
     pub(super) fn text(&self, key: &'static str, faults: &mut Faults) -> Option<String> {
+        self.asks(key, |is| matches!(is, Is::Text | Is::Word(_)));
         let value = self.get(key)?;
         let Some(text) = value.as_str() else {
             faults.value(self.path(key), wrong(key, value, "a string"));
@@ -77,6 +84,7 @@ impl<'a> Section<'a> {
 
     /// A text of any characters, up to [`LONGEST_AROUND`] bytes.
     pub(super) fn long_text(&self, key: &'static str, faults: &mut Faults) -> Option<String> {
+        self.asks(key, |is| matches!(is, Is::LongText));
         let value = self.get(key)?;
         let Some(text) = value.as_str() else {
             faults.value(self.path(key), wrong(key, value, "a string"));
@@ -92,6 +100,7 @@ impl<'a> Section<'a> {
 
     /// A number, written as integer or float.
     pub(super) fn number(&self, key: &'static str, faults: &mut Faults) -> Option<f64> {
+        self.asks(key, |is| matches!(is, Is::Number));
         let value = self.get(key)?;
         let number = as_number(value);
         if number.is_none() {
@@ -121,6 +130,7 @@ impl<'a> Section<'a> {
 
     /// A count; its upper limit is the business of whoever asked.
     pub(super) fn count(&self, key: &'static str, faults: &mut Faults) -> Option<usize> {
+        self.asks(key, |is| matches!(is, Is::Count));
         let value = self.get(key)?;
         let Some(integer) = value.as_integer() else {
             faults.value(self.path(key), wrong(key, value, "an integer"));
@@ -141,6 +151,10 @@ impl<'a> Section<'a> {
         words: &[(&'static str, T)],
         faults: &mut Faults,
     ) -> Option<T> {
+        self.asks(
+            key,
+            |is| matches!(is, Is::Word(all) if all().into_iter().eq(words.iter().map(|(w, _)| *w))),
+        );
         let value = self.get(key)?;
         let Some(got) = value.as_str() else {
             faults.value(self.path(key), wrong(key, value, "a word in quotes"));
@@ -160,6 +174,7 @@ impl<'a> Section<'a> {
         expected: &'static str,
         faults: &mut Faults,
     ) -> Option<&'a [Spanned<DeValue<'a>>]> {
+        self.asks(key, |is| matches!(is, Is::List(..) | Is::Pair));
         let value = self.get(key)?;
         let list = value.as_array();
         if list.is_none() {

@@ -1,5 +1,6 @@
 //! A JSON value that knows its own path, so that every complaint can name the place.
 
+use crate::math::figures::meant;
 use serde_json::Value;
 
 use super::error::Fault;
@@ -146,9 +147,9 @@ impl<'a> Node<'a> {
         self.value.as_str().ok_or_else(|| self.wrong("a string"))
     }
 
-    /// This value as a number in a range.
+    /// This value as a number in a range, as it was meant: exporters that compute in f32 write its digits.
     pub(super) fn number(&self, allowed: &Allowed) -> Result<f64, Fault> {
-        let got = self.value.as_f64().ok_or_else(|| self.wrong("a number"))?;
+        let got = self.value.as_f64().map(meant).ok_or_else(|| self.wrong("a number"))?;
         if allowed.holds(got) {
             return Ok(got);
         }

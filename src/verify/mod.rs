@@ -31,7 +31,7 @@ pub mod tolerance;
 pub mod total;
 mod walk;
 
-use crate::cancel::{Cancel, Cancelled};
+use crate::cancel::{Cancel, Cancelled, Steps, Tell, untold};
 use crate::grid::Table;
 use crate::grid::provenance::{LawRecord, Waiver};
 use crate::tables::{Bound, Spec, driver};
@@ -194,13 +194,35 @@ pub fn check_until(
     tolerance: f64,
     waivers: &[Waiver],
 ) -> Result<Result<(Verified, Vec<Finding>), Vec<Finding>>, Cancelled> {
+    check_telling(cancel, bound, table, tolerance, waivers, &untold)
+}
+
+/// [`check_until`], telling of each law.
+///
+/// # Errors
+/// As [`check_until`].
+#[allow(clippy::type_complexity, reason = "the result of `check`, or none")]
+pub fn check_telling(
+    cancel: &Cancel,
+    bound: &Bound,
+    table: Table,
+    tolerance: f64,
+    waivers: &[Waiver],
+    tell: &Tell<'_>,
+) -> Result<Result<(Verified, Vec<Finding>), Vec<Finding>>, Cancelled> {
     let case = Case { bound, table: &table, tolerance, cancel };
     let mut laws = Vec::new();
     let mut broken = Vec::new();
     let mut warnings = Vec::new();
     let mut waived = Vec::new();
     let declared: Vec<&Law> = declared(&bound.spec).collect();
-    let outcomes: Vec<Outcome> = declared.par_iter().map(|law| (law.check)(&case)).collect();
+    let steps = Steps::new(declared.len(), tell);
+    let check = |law: &&Law| {
+        let outcome = (law.check)(&case);
+        steps.one();
+        outcome
+    };
+    let outcomes: Vec<Outcome> = declared.par_iter().map(check).collect();
     cancel.check()?;
     for (law, outcome) in declared.into_iter().zip(outcomes) {
         match &outcome {

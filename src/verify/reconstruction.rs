@@ -5,7 +5,7 @@
 //! that is more than a limit, every n-th one. Then the cells of the largest errors are searched on a finer
 //! grid of 5 x 5 points each, so that a corner does not slip through between two middles.
 
-use crate::cancel::Cancel;
+use crate::cancel::{Cancel, Steps, Tell, untold};
 use crate::grid::axis::count;
 use crate::grid::layout::{MAX_AXES, Point, combination};
 use crate::grid::provenance::{Reconstruction, Spread};
@@ -61,6 +61,18 @@ impl<'a> Probe<'a> {
     /// throws the figures away.
     #[must_use]
     pub fn until(cancel: &'a Cancel, bound: &'a Bound, tolerance: f64, limit: usize) -> Probe<'a> {
+        Probe::telling(cancel, bound, tolerance, limit, &untold)
+    }
+
+    /// [`Probe::until`], telling of the points that are integrated.
+    #[must_use]
+    pub fn telling(
+        cancel: &'a Cancel,
+        bound: &'a Bound,
+        tolerance: f64,
+        limit: usize,
+        tell: &Tell<'_>,
+    ) -> Probe<'a> {
         let grid = &bound.spec.grid;
         let between: Vec<Vec<f64>> = (0..grid.axes().len()).map(|i| grid.between(i)).collect();
         let total: usize = between.iter().map(Vec::len).product();
@@ -68,7 +80,7 @@ impl<'a> Probe<'a> {
         let chosen: Vec<[f64; MAX_AXES]> =
             (0..total).step_by(step).map(|n| combination(&between, n)).collect();
         let mut probe = Probe { cancel, bound, tolerance, points: Vec::new() };
-        probe.points = probe.integrate(&chosen);
+        probe.points = probe.integrate(&chosen, tell);
         probe
     }
 
@@ -96,7 +108,7 @@ impl<'a> Probe<'a> {
         let practical = worst.iter().filter(|c| around(grid, &c.fresh.x).iter().any(inside)).take(SEARCHED);
         let cells: Vec<[f64; MAX_AXES]> =
             worst.iter().take(SEARCHED).chain(practical).flat_map(|c| around(grid, &c.fresh.x)).collect();
-        let fine = self.integrate(&cells);
+        let fine = self.integrate(&cells, &untold);
         let searched = self.compare_all(reader, stored, &fine);
         let whole = self.spread(&regular, &searched, |_| true);
         Reconstruction {
@@ -114,12 +126,14 @@ impl<'a> Probe<'a> {
         self.bound.baker.decoded().unwrap_or(&self.bound.spec.layout.channels)
     }
 
-    fn integrate(&self, points: &[[f64; MAX_AXES]]) -> Vec<Fresh> {
+    fn integrate(&self, points: &[[f64; MAX_AXES]], tell: &Tell<'_>) -> Vec<Fresh> {
+        let steps = Steps::new(points.len(), tell);
         let fresh = |x: &[f64; MAX_AXES]| {
             self.cancel.check().ok()?;
             let point = self.bound.spec.grid.at_coordinates(x);
             let mut value = self.bound.baker.texel(point.values(), self.tolerance).ok()?.value;
             self.bound.baker.decode(point.values(), &mut value);
+            steps.one();
             Some(Fresh { x: *x, point, value })
         };
         points.par_iter().filter_map(fresh).collect()

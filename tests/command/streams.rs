@@ -14,6 +14,7 @@ const PRINTING: &[&[&str]] = &[
     &["bake", "DIR/small.toml", "--message-format", "json", "-o", "DIR/again"],
     &["bake", "DIR/broken.toml", "--message-format", "json", "-o", "DIR/broken"],
     &["bake", "--dry-run"],
+    &["bake", "--dry-run", "--message-format", "json"],
     &["bake", "--scene", "tests/scenes/four_materials.glb", "--message-format", "json", "--dry-run"],
     &["bake", "--engine", "osl", "--suggest"],
     &["bake", "--engine", "osl", "--suggest", "--message-format", "json"],
@@ -52,6 +53,10 @@ const PRINTING: &[&[&str]] = &[
     &["describe", "ggx"],
     &["guide"],
     &["guide", "three"],
+    &["schema"],
+    &["completions", "bash"],
+    &["man"],
+    &["man", "bake"],
 ];
 
 /// Verbs without data: what they have to say goes to stderr.
