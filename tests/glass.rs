@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::float_cmp, reason = "test; exact values are asserted exactly")]
 
 use crate::tolerance::{DIGIT_LOST, DIGITS_LOST, DRAWN, INTEGRAL_5, INTEGRAL_9, near};
+use brdfbake::integrate::View;
 use brdfbake::integrate::sobol::Sobol;
 use brdfbake::math::frame;
 use brdfbake::models::{self, Brdf, Params};
@@ -15,7 +16,7 @@ fn build(name: &str, params: &Json) -> Box<dyn Brdf> {
 }
 
 fn transmitted(model: &dyn Brdf, mu: f64, tolerance: f64) -> (f64, f64) {
-    let e = model.transmission().unwrap().albedo(mu, tolerance).unwrap();
+    let e = model.transmission().unwrap().albedo(mu.into(), tolerance);
     (e.value[0], e.error[0])
 }
 
@@ -156,4 +157,37 @@ fn reflection_from_below_is_that_of_the_inverse_index() {
     let (x, y) = (above.eval(down(a), down(b)), below.eval(a, b));
     near!(x, y, DIGIT_LOST * y, "{x} {y}");
     assert_eq!(above.eval(a, glam::DVec3::X), 0.0);
+}
+
+#[test]
+fn two_widths_turn_the_transmitted_part_and_the_sampler_agrees() {
+    // from both sides, below and beyond the critical angle, along the tangents and between them
+    for (name, eta, mu, phi) in [
+        ("ggx-glass", 1.5, 0.4, 0.6),
+        ("ggx-glass", 0.7, 0.9, 2.5),
+        ("ggx-glass", 0.7, 0.5, 0.9),
+        ("beckmann-glass", 0.8, 0.5, std::f64::consts::FRAC_PI_2),
+        ("beckmann-glass", 1.3, 0.2, 0.0),
+    ] {
+        let model = build(name, &json!({ "alpha_x": 0.2, "alpha_y": 0.7, "eta": eta }));
+        let btdf = model.transmission().unwrap();
+        let view = View { mu, phi };
+        let e = btdf.albedo(view, 1e-8);
+        assert!(e.error[0] <= 1e-8, "{name} {eta} {view:?}: {:e}", e.error[0]);
+        let n = 1 << 16;
+        let wo = view.direction();
+        let draws = Sobol::new(5).points(n).filter_map(|u| btdf.sample(wo, u));
+        let sum: f64 = draws.map(|s| btdf.eval(s.wi, wo) * s.wi.z.abs() / s.pdf).sum();
+        let mean = sum / f64::from(n);
+        near!(mean, e.value[0], DRAWN, "{name} {eta} {view:?}: {mean} {}", e.value[0]);
+        // the image in a tangent is the same, and widths that are nearly equal are nearly one
+        let image = btdf.albedo(View { mu, phi: std::f64::consts::PI - phi }, 1e-8);
+        near!(image.value[0], e.value[0], e.error[0] + image.error[0], "{name} {eta} {view:?}");
+        let (one, two) = (
+            json!({ "alpha": 0.3, "eta": eta }),
+            json!({ "alpha_x": 0.3, "alpha_y": 0.300_000_001, "eta": eta }),
+        );
+        let [one, two] = [one, two].map(|p| build(name, &p).transmission().unwrap().albedo(view, 1e-8));
+        near!(one.value[0], two.value[0], one.error[0] + two.error[0] + 1e-9, "{name} {eta} {view:?}");
+    }
 }

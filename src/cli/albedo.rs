@@ -78,13 +78,13 @@ pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
                 exact(mu)
             )));
         }
+        let view = View { mu, phi: args.phi };
         let rule = if args.chart { integrate_in_chart } else { integrate };
-        let e =
-            rule(&*model, View { mu, phi: args.phi }, &[Functional::One], args.tolerance).map_err(|e| {
-                let why = e.of(["E"].into_iter());
-                Failure::new(Exit::of_texel(&e), format!("{}: mu = {}: {why}", info.id, exact(mu)))
-            })?;
-        let through = model.transmission().and_then(|t| t.albedo(mu, args.tolerance));
+        let e = rule(&*model, view, &[Functional::One], args.tolerance).map_err(|e| {
+            let why = e.of(["E"].into_iter());
+            Failure::new(Exit::of_texel(&e), format!("{}: mu = {}: {why}", info.id, exact(mu)))
+        })?;
+        let through = model.transmission().map(|t| t.albedo(view, args.tolerance));
         let through = through.map(|t| (t.value[0], t.error[0]));
         missed |= e.error[0] > args.tolerance || through.is_some_and(|t| t.1 > args.tolerance);
         if args.json {

@@ -43,7 +43,7 @@ pub fn visit(mu_o: f64, floor: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
 }
 
 /// Nodes in (0, 1) as `(s, 1 - s, weight)`, about 4 a level.
-pub(super) fn double_exponential(level: f64, mut add: impl FnMut(f64, f64, f64)) {
+fn double_exponential(level: f64, mut add: impl FnMut(f64, f64, f64)) {
     for &[s, rest, weight] in rule(level) {
         add(s, rest, weight);
     }

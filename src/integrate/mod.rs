@@ -1,7 +1,7 @@
 //! Quadrature rules and charts. This room knows directions and measures, but no BRDF.
 //!
 //! A [`Chart`] spreads nodes over the hemisphere of incident directions so that the peak, the horizon and the plane
-//! of incidence are coordinate lines, and so are the creases of a Fresnel factor ([`crease`]); [`ladder`] raises its level as the
+//! of incidence are coordinate lines, and so are the creases of a Fresnel factor ([`crease`]); [`refracted`] is the chart of what an interface lets through. [`ladder`] raises its level as the
 //! one stopping rule says ([`stop`]): three levels, and a trust that is measured for each chart. Where a model
 //! has no chart, [`adaptive`] subdivides the hemisphere instead.
 
@@ -22,6 +22,8 @@ pub mod ladder;
 pub mod line;
 pub mod lobe;
 pub mod nodes;
+pub mod refracted;
+mod refracted_row;
 pub mod slab;
 pub mod sobol;
 pub mod stop;

@@ -18,8 +18,7 @@ pub static INFO: ModelInfo = ModelInfo {
     ],
     params: &[ALPHA.swept("roughness", [0.1, 1.0], 1.0), ALPHA_X, ALPHA_Y, ETA_DIELECTRIC, ACROSS],
     laws: Laws { reciprocal: true, passive: true, isotropic: false },
-    notes: "As `ggx-glass`. The masking is exact, not the rational fit of the paper. Below alpha = 0.01 its integrals are known to 1e-3 or so: \
-        default axes begin there.",
+    notes: "As `ggx-glass`. The masking is exact, not the rational fit of the paper. Default axes begin at alpha = 0.01.",
     also: &[],
     known: &[
         Known {

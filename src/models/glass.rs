@@ -1,6 +1,6 @@
 //! The body of rough dielectric interfaces that reflect and transmit.
 //!
-//! Both parts are integrated over facet normals in [`facet`] coordinates, with `wo` fixed:
+//! Both parts are integrated over facet normals, with `wo` fixed; T in the chart of [`refracted`]:
 //!
 //! ```text
 //! R(mu) = int F D 4 c V mu_i dwm,  T(mu) = int (1 - F) D c G2(wo, wt) / mu dwm,  c = wo . wm
@@ -9,9 +9,9 @@
 
 use super::microfacet::{Distribution, Fresnel, Masking};
 use super::{Brdf, Btdf, Param, ParamError, Params, Sample};
-use crate::integrate::facet::{self, Facet};
-use crate::integrate::stop::{Level, Trust, climb_sure};
-use crate::integrate::{BATCH, Chart, Estimate, Nodes};
+use crate::integrate::refracted::{self, Facet, Interface};
+use crate::integrate::stop::{Level, climb_sure};
+use crate::integrate::{BATCH, Chart, Estimate, Nodes, View, ladder};
 use crate::math::frame;
 use crate::terms::fresnel;
 use crate::terms::refraction::{self, Across};
@@ -24,15 +24,6 @@ pub(super) const ACROSS: Param = Param::choice(
      1 / (1 + Lambda_o + Lambda_i) for reflection",
     &["separable", "beta", "sum"],
 );
-
-/// Levels of the rule: 4 nodes each in both coordinates of each panel.
-const LEVELS: [f64; 11] = [2.0, 3.0, 4.5, 6.5, 9.0, 12.0, 16.0, 21.0, 27.0, 34.0, 43.0];
-
-/// Trust in it.
-const TRUST: Trust = Trust { gain: &[1.0], memory: &[0.3] };
-
-/// Widths below which the coarsest levels see nothing of a peak at grazing views, and those views.
-const NARROW: [f64; 2] = [1e-4, 0.01];
 
 /// A rough dielectric interface.
 #[derive(Debug)]
@@ -77,91 +68,37 @@ impl<D: Distribution> Glass<D> {
             * self.masking().visibility(&self.distribution, wo, wi)
     }
 
-    /// Ends of the panels in c for T.
-    fn transmission_breaks(&self, mu: f64) -> Vec<f64> {
-        let s = ((1.0 - mu) * (1.0 + mu)).sqrt();
-        let mut breaks = vec![mu, s];
-        let start = if self.eta < 1.0 { fresnel::cos_critical(self.eta) } else { 0.0 };
-        if self.eta < 1.0 {
-            // where the refracted direction of a facet in the plane of incidence passes the horizon
-            let height = |c: f64, sign: f64| {
-                let sin = ((1.0 - c) * (1.0 + c)).sqrt();
-                c * mu + sign * sin * s - self.highest(c, mu)
-            };
-            for sign in [1.0, -1.0] {
-                breaks.extend(roots(start, 1.0, |c| height(c, sign)));
-            }
-        }
-        between(start, breaks)
+    /// The sums of T at a level of its chart.
+    fn transmitted_albedo(&self, view: View, level: f64, out: &mut Level) {
+        let wo = view.direction();
+        let hidden = self.distribution.mu_lambda(wo);
+        let mut count = 0;
+        refracted::visit(view, &self.interface(), level, &mut |f: &Facet| {
+            count += 1;
+            let through = fresnel::transmittance_between(f.cos, f.cos_t, self.eta).unpolarised();
+            let masked = self.g2_over_mu(wo, hidden, f.wt);
+            out.panel(f.panel)[0] += f.weight * f.cos * through * self.distribution.d(f.wm) * masked;
+        });
+        out.count(count);
     }
 
-    /// From the denser side: the height `wm.z` above which a facet refracts to the upper side.
-    fn highest(&self, c: f64, mu: f64) -> f64 {
-        let r = 1.0 / self.eta;
-        let cos_t = fresnel::cos_refracted(c, self.eta).unwrap_or(0.0);
-        // r mu / (r c - cos_t) = r mu (r c + cos_t) / (r^2 - 1)
-        r * mu * (r * c + cos_t) / ((r - 1.0) * (r + 1.0))
+    fn interface(&self) -> Interface {
+        Interface { alpha: self.distribution.widths(), reach: self.distribution.reach(), eta: self.eta }
     }
 
-    fn transmitted_albedo(&self, mu: f64, level: f64, out: &mut Level) {
-        let wo = frame::from_mu(mu);
-        let mut add = |f: &Facet| {
-            out.count(1);
-            let Some(wt) = fresnel::refract(wo, f.wm, self.eta) else { return };
-            if wt.z < 0.0 && f.wm.z > 0.0 {
-                let through = fresnel::dielectric_transmittance(f.cos, self.eta).unpolarised();
-                out.panel(f.panel)[0] +=
-                    f.weight * through * self.distribution.d(f.wm) * f.cos * self.g2_over_mu(wo, wt);
-            }
-        };
-        let range = |row: &facet::Row| {
-            let from = if self.eta < 1.0 { row.azimuth_of_height(self.highest(row.c, mu)) } else { 0.0 };
-            (from, row.horizon())
-        };
-        facet::visit(mu, &self.transmission_breaks(mu), level, &range, &mut add);
-    }
-
-    /// `G2(wo, wt) / mu_o`, finite at grazing.
-    fn g2_over_mu(&self, wo: DVec3, wt: DVec3) -> f64 {
+    /// `G2(wo, wt) / mu_o`, finite at grazing; `hidden` is [`mu_lambda`](crate::terms::smith::Ndf::mu_lambda) of wo.
+    fn g2_over_mu(&self, wo: DVec3, hidden: f64, wt: DVec3) -> f64 {
         let (mu, mu_t) = (wo.z, wt.z.abs());
         let quotient = |a: f64, b: f64| if b > 0.0 { a / b } else { 0.0 };
         match self.across {
-            Across::Separable => {
-                let area = self.distribution.facing_area(wo) * self.distribution.facing_area(wt);
-                quotient(mu_t, area)
+            Across::Separable => quotient(mu_t, (mu + hidden) * (mu_t + self.distribution.mu_lambda(wt))),
+            Across::Sum => {
+                let hidden_t = self.distribution.mu_lambda(wt);
+                quotient(mu_t, mu * mu_t + (mu * hidden_t + mu_t * hidden))
             }
-            Across::Sum => quotient(mu_t, self.distribution.masked_area(wo, wt)),
             Across::Beta => quotient(refraction::g2(self.across, &self.distribution, wo, wt), mu),
         }
     }
-}
-
-/// The breaks in (start, 1), in order, with both ends.
-fn between(start: f64, mut breaks: Vec<f64>) -> Vec<f64> {
-    breaks.retain(|b| *b > start && *b < 1.0);
-    breaks.extend([start, 1.0]);
-    breaks.sort_by(f64::total_cmp);
-    breaks.dedup();
-    breaks
-}
-
-/// Sign changes of a function in 64 steps, refined by bisection.
-fn roots(lo: f64, hi: f64, f: impl Fn(f64) -> f64) -> Vec<f64> {
-    let at = |i: u32| lo + (hi - lo) * f64::from(i) / 64.0;
-    let mut found = Vec::new();
-    for i in 0..64 {
-        let (mut a, mut b) = (at(i), at(i + 1));
-        let sign = f(a) > 0.0;
-        if sign == (f(b) > 0.0) {
-            continue;
-        }
-        for _ in 0..60 {
-            let mid = 0.5 * (a + b);
-            if (f(mid) > 0.0) == sign { a = mid } else { b = mid }
-        }
-        found.push(a);
-    }
-    found
 }
 
 impl<D: Distribution> Brdf for Glass<D> {
@@ -240,18 +177,14 @@ impl<D: Distribution> Btdf for Glass<D> {
         })
     }
 
-    fn albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate> {
+    fn albedo(&self, view: View, tolerance: f64) -> Estimate {
         if self.flat {
-            return Some(Estimate::exact_one(
-                fresnel::dielectric_transmittance(mu_o, self.eta).unpolarised(),
-            ));
+            return Estimate::exact_one(fresnel::dielectric_transmittance(view.mu, self.eta).unpolarised());
         }
-        let alpha = self.distribution.alpha()?;
-        let hidden = alpha < NARROW[0] && mu_o < NARROW[1];
-        let finer = [hidden, tolerance < 1e-3, tolerance < 1e-6, tolerance < 1e-9];
-        let first = finer.into_iter().filter(|f| *f).count();
-        Some(climb_sure(TRUST, first..LEVELS.len(), 1, tolerance, |j, level| {
-            self.transmitted_albedo(mu_o, LEVELS[j], level);
-        }))
+        let view = if self.turns() { view } else { view.in_plane() };
+        let levels = ladder::first_level(tolerance)..ladder::LEVELS.len();
+        climb_sure(self.interface().trust(), levels, 1, tolerance, |j, level| {
+            self.transmitted_albedo(view, ladder::LEVELS[j], level);
+        })
     }
 }

@@ -214,9 +214,9 @@ pub trait Btdf: Debug {
     /// Density of [`Btdf::sample`] per unit solid angle of `wi`, 1/sr.
     fn pdf(&self, wo: DVec3, wi: DVec3) -> f64;
 
-    /// The part T of the flux arriving along `wo` that crosses, `int f(wi, wo) |mu_i| dwi`, with its error; `None` if it
-    /// has no rule for it. The integral of `f(wo, wi)` is T times (n_o / n_i)².
-    fn albedo(&self, mu_o: f64, tolerance: f64) -> Option<Estimate>;
+    /// The part T of the flux arriving along `wo` that crosses, `int f(wi, wo) |mu_i| dwi`, with its error. The integral
+    /// of `f(wo, wi)` is T times (n_o / n_i)².
+    fn albedo(&self, view: View, tolerance: f64) -> Estimate;
 }
 
 /// A drawn direction and its density.

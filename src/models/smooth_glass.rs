@@ -6,7 +6,7 @@
 use super::microfacet::ETA_DIELECTRIC;
 use super::{Alias, Brdf, Btdf, Known, Laws, ModelInfo, ParamError, Params, Quantity, Sample};
 use crate::cite;
-use crate::integrate::{Chart, Estimate, MAX_CHANNELS};
+use crate::integrate::{Chart, Estimate, View};
 use crate::terms::fresnel;
 use glam::{DVec2, DVec3};
 
@@ -93,9 +93,7 @@ impl Btdf for SmoothGlass {
         0.0
     }
 
-    fn albedo(&self, mu_o: f64, _tolerance: f64) -> Option<Estimate> {
-        let mut value = [0.0; MAX_CHANNELS];
-        value[0] = fresnel::dielectric_transmittance(mu_o, self.eta).unpolarised();
-        Some(Estimate::exact(value))
+    fn albedo(&self, view: View, _tolerance: f64) -> Estimate {
+        Estimate::exact_one(fresnel::dielectric_transmittance(view.mu, self.eta).unpolarised())
     }
 }

@@ -86,8 +86,7 @@ pub static INFO: TableInfo = TableInfo {
     least_tolerance: |_| 1e-3,
     blended: true,
     notes: "Wants a model with eta that transmits (ggx-glass, beckmann-glass). Means and shares do not depend on mu: a table of them \
-        alone is `average-albedo`, layout both-sides. From inside, total reflection makes the integrals dear: keep the tables small. \
-        At eta = 1 both sides are the same and x = 1/2.",
+        alone is `average-albedo`, layout both-sides. At eta = 1 both sides are the same and x = 1/2.",
     bind,
 };
 
@@ -219,6 +218,6 @@ impl Baker for Glass {
     }
 
     fn rule(&self) -> String {
-        format!("facet coordinates under the double exponential, or {}", self.sweep.rule())
+        format!("product Gauss-Legendre, chart of refraction; {}", self.sweep.rule())
     }
 }

@@ -5,7 +5,7 @@
 use super::integral::{Functional, integrate};
 use super::role::{Light, Role, Side};
 use super::sweep::Sweep;
-use super::{BindError, Spec, TexelError};
+use super::{BindError, Spec, TexelError, finite};
 use crate::integrate::{Estimate, MAX_CHANNELS, View};
 use crate::models::Brdf;
 
@@ -126,15 +126,10 @@ pub(super) fn reflected(model: &dyn Brdf, view: View, tolerance: f64) -> Result<
     integrate(model, view, &[Functional::One], tolerance)
 }
 
-/// T: the part that crosses.
+/// T: the part that crosses; 0 of a model that does not transmit.
 ///
 /// # Errors
-/// [`TexelError::NoRule`] for an interface whose widths differ.
+/// [`TexelError::NotFinite`].
 pub(super) fn crossing(model: &dyn Brdf, view: View, tolerance: f64) -> Result<Estimate, TexelError> {
-    let none = TexelError::NoRule { what: "the transmitted part of an anisotropic interface" };
-    let e = model.transmission().and_then(|t| t.albedo(view.mu, tolerance)).ok_or(none)?;
-    if e.value[0].is_finite() && e.error[0].is_finite() {
-        return Ok(e);
-    }
-    Err(TexelError::NotFinite { channel: 0, value: e.value[0] })
+    finite(model.transmission().map_or(Estimate::ZERO, |t| t.albedo(view, tolerance)), 1)
 }

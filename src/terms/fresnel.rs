@@ -108,6 +108,20 @@ pub fn dielectric_transmittance(cos_i: f64, eta: f64) -> Polarised {
     }
 }
 
+/// Transmittance from the cosines to both sides of the facet, for a chart that has them both without a difference.
+///
+/// `T_s = 4 c b/(c + b)²`, b = eta `cos_t`; `T_p = 4 a cos_t/(a + cos_t)²`, a = eta c. The law of refraction is not looked at.
+/// Source: as [`dielectric_transmittance`]. Domain: both cosines in [0, 1], eta in [1e-4, 1e4]. Range: [0, 1]; 0 where one cosine is 0.
+/// Accuracy: relative 1e-15 of the cosines given.
+#[must_use]
+pub fn transmittance_between(cos_i: f64, cos_t: f64, eta: f64) -> Polarised {
+    let of = |a: f64, b: f64| {
+        let sum = a + b;
+        if sum > 0.0 { (4.0 * (a / sum) * (b / sum)).min(1.0) } else { 0.0 }
+    };
+    Polarised { s: of(cos_i, eta * cos_t), p: of(eta * cos_i, cos_t) }
+}
+
 /// Cosine of the refracted direction, ≥ 0; `None` under total internal reflection.
 ///
 /// `cos θ_t = √(eta² − 1 + c²)/eta` from above; A.4's `g` is eta times it.

@@ -55,7 +55,7 @@ fn outcomes(number: usize, row: &Row, tolerances: &[f64]) -> Vec<Outcome> {
     let view = View { mu: row.mu, phi: row.phi };
     let at = |&tolerance: &f64| {
         let e = if crosses {
-            model.transmission().and_then(|t| t.albedo(row.mu, tolerance))
+            model.transmission().map(|t| t.albedo(view, tolerance))
         } else {
             integrate(&*model, view, &[Functional::One], tolerance).ok()
         };

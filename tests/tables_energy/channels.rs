@@ -127,8 +127,4 @@ fn wrong_channels_are_refused_with_words() {
     assert!(e.contains("no parameter eta"), "{e}");
     let e = refused("glass-compensation", "ggx", "{}", &["ms.missing"], &["mu", "alpha"]).to_string();
     assert!(e.contains("is no interface"), "{e}");
-    let anisotropic = r#"{"alpha_x": 0.2, "alpha_y": 0.4}"#;
-    let t = request("albedo", "ggx-glass", anisotropic, &["t"], &["mu", "phi"]).bind().unwrap();
-    let e = t.baker.texel(&[0.5, 0.1], 1e-3).unwrap_err().to_string();
-    assert!(e.contains("no rule for the transmitted part of an anisotropic interface"), "{e}");
 }

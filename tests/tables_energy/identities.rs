@@ -252,7 +252,7 @@ fn estimates_of_reflection_and_transmission_are_honest() {
             params.set("eta", eta);
             let model = (info.build)(&params).unwrap();
             let parts = |tolerance| {
-                let t = model.transmission().unwrap().albedo(mu, tolerance).unwrap();
+                let t = model.transmission().unwrap().albedo(mu.into(), tolerance);
                 [Some(t), model.reduced(mu, &[Functional::One], tolerance)]
             };
             for (rough, fine) in parts(1.2e-4).into_iter().zip(parts(1e-7)) {

@@ -129,6 +129,12 @@ fn dielectric_reflects_and_transmits_all_the_power_on_both_sides() {
             );
             assert!(r.s >= r.p * (1.0 - 1e-14), "{what}: the s wave is the stronger one, {r:?}");
             if let Some(cos_t) = fresnel::cos_refracted(c, eta) {
+                if c != 0.0 {
+                    let ratio = if c < 0.0 { 1.0 / eta } else { eta };
+                    let between = fresnel::transmittance_between(c.abs(), cos_t, ratio);
+                    near!(between.s, t.s, MANY_ROUNDINGS, "{what}");
+                    near!(between.p, t.p, MANY_ROUNDINGS, "{what}");
+                }
                 // Reversibility: the same interface passed the other way round reflects the same share.
                 let back = fresnel::dielectric(-cos_t.copysign(c), eta).unpolarised();
                 // Near the critical angle the last bit of the returning cosine decides.

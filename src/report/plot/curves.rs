@@ -104,7 +104,7 @@ fn values(subject: &Subject<'_>, azimuth: f64, cancel: &Cancel) -> Result<Vec<Va
         let mu = part * part;
         let view = View { mu, phi: azimuth.to_radians() };
         let e = integrate(subject.model, view, &[Functional::One], TOLERANCE)?.value[0];
-        let t = subject.model.transmission().and_then(|t| t.albedo(mu, TOLERANCE)).map(|t| t.value[0]);
+        let t = subject.model.transmission().map(|t| t.albedo(view, TOLERANCE).value[0]);
         Ok(Value { mu, e, t })
     };
     // in the horizon itself an albedo may be infinite
