@@ -148,3 +148,37 @@ fn the_difference_of_energy_is_that_of_sums() {
         0
     );
 }
+
+/// Any lobe in the numbers of any other kind: closed forms by equal peaks, least D by the ratio of widths, and back again.
+#[test]
+fn lobes_are_told_in_other_numbers() {
+    let of = |id: &str| conversion(id).unwrap();
+    let told =
+        |from: &str, numbers: [f64; 2], to: &str, by: By| of(from).told_as(numbers, of(to), by).unwrap();
+    let power = told("beckmann", [0.5; 2], "blinn-phong", By::Formula);
+    assert!((power.numbers[0] - 6.0).abs() < FEW_ROUNDINGS * 10.0, "{power:?}");
+    for (n, d) in [(10.0, 0.043), (100.0, 0.0053)] {
+        let slope = told("blinn-phong", [n; 2], "beckmann", By::Formula);
+        assert!((slope.numbers[0] - (2.0f64 / (n + 2.0)).sqrt()).abs() < FEW_ROUNDINGS);
+        assert!((slope.distance - d).abs() < 0.01 * d + 3e-4, "{n}: {slope:?}");
+        assert!(told("blinn-phong", [n; 2], "beckmann", By::Nearest).distance <= slope.distance);
+    }
+    // D depends on the ratio of widths alone, so the nearest one is the same both ways
+    let slope = told("alpha", [0.3; 2], "beckmann", By::Nearest);
+    assert!((slope.distance - 0.179_768).abs() < LOBE_DIGITS_SIX, "{slope:?}");
+    assert!((slope.numbers[0] - 0.3 / 0.872_911).abs() < LOBE_DIGITS, "{slope:?}");
+    let widths = told("ashikhmin-shirley", [10.0, 1000.0], "ward", By::Formula);
+    let expected = [10.0f64, 1000.0].map(|n| (2.0 / (n + 2.0)).sqrt());
+    assert!((0..2).all(|i| (widths.numbers[i] - expected[i]).abs() < FEW_ROUNDINGS), "{widths:?}");
+    let [near, peaks] =
+        [By::Nearest, By::Formula].map(|by| told("ward", [0.1, 0.3], "ashikhmin-shirley", by).distance);
+    assert!(near <= peaks && near > 0.0, "{near} {peaks}");
+    assert!(of("ward").told_as([0.1, 0.3], of("phong"), By::Formula).is_none());
+    // what is one family in other numbers comes back, and what `to-ggx` tells is told here
+    let openpbr = told("disney", [0.4, 0.3], "openpbr", By::Nearest);
+    let back = told("openpbr", openpbr.numbers, "disney", By::Nearest);
+    assert!(openpbr.distance < DIGITS_LOST && (0..2).all(|i| (back.numbers[i] - [0.4, 0.3][i]).abs() < 1e-9));
+    let phong = told("phong", [25.0; 2], "smoothness", By::Nearest);
+    let ggx = of("phong").convert([25.0; 2], By::Nearest);
+    assert!((phong.numbers[0] - (1.0 - ggx.alphas[0].sqrt())).abs() < FEW_ROUNDINGS, "{phong:?}");
+}

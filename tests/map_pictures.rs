@@ -113,6 +113,10 @@ fn pictures_of_all_kinds_are_filtered_or_refused() {
     let path = save("palette.png", &indexed);
     let found = bake(None, RoughnessInput::new(path)).unwrap();
     assert!((found[0] - 0.2).abs() < 1e-6 && (found[1] - 0.8).abs() < 1e-6, "{found:?}");
+    // grey has no directions in it
+    let grey = png([4, 4], ColorType::Grayscale, BitDepth::Eight, None, &[200; 16]);
+    let message = bake(Some(Input::new(save("grey.png", &grey))), number()).unwrap_err();
+    assert!(message.contains("no channel `R`; there is Y"), "{message}");
     // truncated, in each of two places, as roughness and as normals
     let whole = png([8, 8], ColorType::Rgb, BitDepth::Eight, None, &[140; 8 * 8 * 3]);
     for cut in [30, whole.len() - 20] {

@@ -2,14 +2,17 @@
 //!
 //! A parametrisation is one entry of [`CONVERSIONS`]: maps and `brdfbake eval` go through the same entry.
 
+pub mod between;
 pub mod energy;
 
+pub use between::Told;
 pub use energy::Gap;
 
 use super::{FunctionError, FunctionInfo, NO_ANGLES, known, number};
 use crate::cite::{self, Cite};
 use crate::models::{Param, Params};
 use crate::terms::half_vectors::{self, Lobe};
+use between::exponent;
 
 /// A way to tell a lobe by one or two numbers.
 #[derive(Debug)]
@@ -24,6 +27,8 @@ pub struct Conversion {
     pub sources: &'static [(Cite, &'static str)],
     /// The lobe of half vectors; a single number is given twice.
     pub lobe: fn([f64; 2]) -> Lobe,
+    /// The numbers of a lobe that has the peak of GGX of these widths along x and y; they may lie beyond their ranges.
+    pub told: fn([f64; 2]) -> [f64; 2],
     /// The model that is meant, with its parameters for a Fresnel factor of 1; none where the lobe is GGX.
     pub model: Option<fn([f64; 2]) -> ModelOf>,
 }
@@ -56,6 +61,7 @@ const TABLE: &[Conversion] = &[
         numbers: &[("n", POWER)],
         sources: &[(cite::BLINN_1977, "cosine power"), (cite::WALTER_2007, "Eq. 30")],
         lobe: |[n, _]| Lobe::Power([n; 2]),
+        told: |w| w.map(exponent),
         model: Some(|[n, _]| ("blinn-phong-microfacet", vec![("n", n), ("f0", 1.0)])),
     },
     Conversion {
@@ -64,6 +70,7 @@ const TABLE: &[Conversion] = &[
         numbers: &[("n", POWER)],
         sources: &[(cite::LAFORTUNE_WILLEMS_1994, "cosine power")],
         lobe: |[n, _]| Lobe::Power([4.0 * n; 2]),
+        told: |w| w.map(|w| 0.25 * exponent(w)),
         model: Some(|[n, _]| ("phong", vec![("kd", 0.0), ("ks", 1.0), ("n", n)])),
     },
     Conversion {
@@ -72,6 +79,7 @@ const TABLE: &[Conversion] = &[
         numbers: &[("m", WIDTH)],
         sources: &[(cite::COOK_TORRANCE_1982, "section 2")],
         lobe: |[m, _]| Lobe::Beckmann([m; 2]),
+        told: |w| w,
         model: Some(|[m, _]| ("beckmann", vec![("alpha", m), ("f0", 1.0)])),
     },
     Conversion {
@@ -80,6 +88,7 @@ const TABLE: &[Conversion] = &[
         numbers: &[("alpha_x", WIDTH), ("alpha_y", WIDTH)],
         sources: &[(cite::WARD_1992, "Eq. 5 (number recalled)")],
         lobe: Lobe::Beckmann,
+        told: |w| w,
         model: Some(|[x, y]| ("ward", vec![("rho_d", 0.0), ("rho_s", 1.0), ("alpha_x", x), ("alpha_y", y)])),
     },
     Conversion {
@@ -88,6 +97,7 @@ const TABLE: &[Conversion] = &[
         numbers: &[("n_u", POWER), ("n_v", POWER)],
         sources: &[(cite::ASHIKHMIN_SHIRLEY_2000, "Eq. 4")],
         lobe: Lobe::Power,
+        told: |w| w.map(exponent),
         model: Some(|[u, v]| ("ashikhmin-shirley-specular", vec![("rs", 1.0), ("nu", u), ("nv", v)])),
     },
     Conversion {
@@ -96,6 +106,7 @@ const TABLE: &[Conversion] = &[
         numbers: &[("alpha", WIDTH)],
         sources: &[(cite::WALTER_2007, "Eq. 33")],
         lobe: |[a, _]| Lobe::Ggx([a; 2]),
+        told: |w| w,
         model: None,
     },
     Conversion {
@@ -104,6 +115,7 @@ const TABLE: &[Conversion] = &[
         numbers: &[("r", UNIT)],
         sources: &[(cite::BURLEY_2012, "section 5.4")],
         lobe: |[r, _]| ggx_of(r, [1.0; 2]),
+        told: |w| w.map(f64::sqrt),
         model: None,
     },
     Conversion {
@@ -112,6 +124,7 @@ const TABLE: &[Conversion] = &[
         numbers: &[("s", UNIT)],
         sources: &[(cite::BURLEY_2012, "section 5.4, with r = 1 - s")],
         lobe: |[s, _]| ggx_of(1.0 - s, [1.0; 2]),
+        told: |w| w.map(|w| 1.0 - w.sqrt()),
         model: None,
     },
     Conversion {
@@ -123,6 +136,7 @@ const TABLE: &[Conversion] = &[
             let q = (1.0 - 0.9 * a).sqrt();
             ggx_of(r, [1.0 / q, q])
         },
+        told: |[x, y]| [(x * y).sqrt().sqrt(), (1.0 - y / x) / 0.9],
         model: None,
     },
     Conversion {
@@ -133,6 +147,10 @@ const TABLE: &[Conversion] = &[
         lobe: |[r, a]| {
             let t = (2.0 / (1.0 + (1.0 - a) * (1.0 - a))).sqrt();
             ggx_of(r, [t, (1.0 - a) * t])
+        },
+        told: |[x, y]| {
+            let ratio = (y / x).min(1.0);
+            [(x * (0.5 * (1.0 + ratio * ratio)).sqrt()).sqrt(), 1.0 - ratio]
         },
         model: None,
     },
@@ -195,15 +213,22 @@ pub fn gltf_anisotropy([x, y]: [f64; 2]) -> (f64, f64, bool) {
     (narrow.sqrt(), strength, x >= y)
 }
 
+fn undefined(function: &'static str) -> FunctionError {
+    FunctionError::Undefined { function, why: "a number is outside the range of this parametrisation" }
+}
+
+/// Are these the numbers of a lobe?
+fn within(entry: &Conversion, numbers: [f64; 2]) -> bool {
+    let within = |(v, (_, [lo, hi])): (&f64, &(&str, [f64; 2]))| (*lo..=*hi).contains(v);
+    numbers.iter().zip(entry.numbers).all(within)
+}
+
 fn part(p: &Params) -> Result<f64, FunctionError> {
-    let why = "a number is outside the range of this parametrisation";
-    let undefined = FunctionError::Undefined { function: "to-ggx", why };
-    let Some(entry) = conversion(p.choice("from")?) else { return Err(undefined) };
+    let Some(entry) = conversion(p.choice("from")?) else { return Err(undefined("to-ggx")) };
     let first = p.number("a")?;
     let numbers = [first, if entry.numbers.len() > 1 { p.number("b")? } else { first }];
-    let within = |(v, (_, [lo, hi])): (&f64, &(&str, [f64; 2]))| (*lo..=*hi).contains(v);
-    if !numbers.iter().zip(entry.numbers).all(within) {
-        return Err(undefined);
+    if !within(entry, numbers) {
+        return Err(undefined("to-ggx"));
     }
     let by = if p.choice("rule")? == "formula" { By::Formula } else { By::Nearest };
     let converted = entry.convert(numbers, by);
@@ -221,7 +246,9 @@ fn part(p: &Params) -> Result<f64, FunctionError> {
 }
 
 /// The family.
-pub static ALL: &[FunctionInfo] = &[FunctionInfo {
+pub static ALL: &[FunctionInfo] = &[TO_GGX, between::INFO];
+
+const TO_GGX: FunctionInfo = FunctionInfo {
     id: "to-ggx",
     title: "Parameters of another lobe as widths of GGX",
     formula: "argmin D(lobe, GGX), or equal peaks: alpha = sqrt(2 / (n + 2)), alpha = m",
@@ -266,7 +293,7 @@ pub static ALL: &[FunctionInfo] = &[FunctionInfo {
         ),
     ],
     eval: |p, _| part(p),
-}];
+};
 
 #[cfg(test)]
 mod tests {

@@ -198,18 +198,22 @@ pub fn nearest(lobe: &Lobe) -> [f64; 2] {
         Lobe::Ggx(w) => *w,
         Lobe::Beckmann(m) => m.map(|m| NEAREST_TO_BECKMANN * m),
         Lobe::Power(n) => {
-            let start = n.map(|n| libm::log(0.89 * equivalent_alpha(n)));
-            if lobe.is_isotropic() {
-                let alpha =
-                    golden(start[0] - 0.4, start[0] + 0.4, |x| distance(lobe, &Lobe::Ggx([libm::exp(x); 2])));
-                return [libm::exp(alpha); 2];
-            }
-            let found = simplex::minimise(&start, 0.1, 2, 60, &mut |p| {
-                distance(lobe, &Lobe::Ggx([libm::exp(p[0]), libm::exp(p[1])]))
-            });
-            [libm::exp(found[0]), libm::exp(found[1])]
+            let start = n.map(|n| 0.89 * equivalent_alpha(n));
+            least(lobe.is_isotropic(), start, |w| distance(lobe, &Lobe::Ggx(w)))
         }
     }
+}
+
+/// The widths near a start for which D is least; of an isotropic lobe both are one.
+#[must_use]
+pub fn least(isotropic: bool, start: [f64; 2], distance: impl Fn([f64; 2]) -> f64) -> [f64; 2] {
+    let start = start.map(libm::log);
+    if isotropic {
+        let width = golden(start[0] - 0.4, start[0] + 0.4, |x| distance([libm::exp(x); 2]));
+        return [libm::exp(width); 2];
+    }
+    let found = simplex::minimise(&start, 0.1, 2, 60, &mut |p| distance([libm::exp(p[0]), libm::exp(p[1])]));
+    [libm::exp(found[0]), libm::exp(found[1])]
 }
 
 /// The least of a function with one minimum, by the golden section.

@@ -20,7 +20,8 @@ pub(super) struct Images<'a> {
 }
 
 impl<'a> Images<'a> {
-    /// Looks at an image, of which channels are read that are named at their places. Returns how many it has.
+    /// Looks at an image, of which channels are read that are named at their places; grey serves for any colour, but for no
+    /// direction. Returns how many it has.
     pub(super) fn look(
         &mut self,
         role: &str,
@@ -30,7 +31,8 @@ impl<'a> Images<'a> {
         faults: &mut Faults,
     ) -> Option<usize> {
         let facts = known(image, place, faults)?;
-        named.iter().for_each(|(name, place)| has(&facts, name, place, faults));
+        let grey = role != NORMAL;
+        named.iter().for_each(|(name, place)| has(&facts, name, grey, place, faults));
         self.count(&facts);
         self.sizes.push((image, facts.size, place.clone()));
         self.inputs.push(identity::Input { role: role.to_owned(), content: facts.blake3 });
@@ -95,9 +97,12 @@ fn known(image: &Source, place: &Path, faults: &mut Faults) -> Option<Facts> {
     None
 }
 
-/// An image must have a channel; grey serves for any colour.
-fn has(facts: &Facts, name: &str, place: &Path, faults: &mut Faults) {
-    let grey = ["R", "G", "B"].contains(&name) && facts.names.iter().any(|n| n == "Y");
+/// What normals are to a map.
+pub(super) const NORMAL: &str = "normal";
+
+/// An image must have a channel, which grey may serve for.
+fn has(facts: &Facts, name: &str, grey: bool, place: &Path, faults: &mut Faults) {
+    let grey = grey && ["R", "G", "B"].contains(&name) && facts.names.iter().any(|n| n == "Y");
     if !grey && !facts.names.iter().any(|n| n == name) {
         let why = format!("no channel `{name}`; there is {}", facts.names.join(", "));
         faults.value(place.clone(), fault(why, None, Some("name one of them")));

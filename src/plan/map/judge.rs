@@ -1,6 +1,6 @@
 //! Whether a map can be made: its numbers, what goes with what, and its images.
 
-use super::images::Images;
+use super::images::{Images, NORMAL};
 use super::{FromLobe, MapRequest, RoughnessInput, fault, sbrdf};
 use crate::encode::mips;
 use crate::maps::{Centre, Objective, Shape, rules};
@@ -133,7 +133,7 @@ pub(super) fn images(request: &MapRequest, path: &Path, faults: &mut Faults) -> 
         let place = path.key("normal");
         let at = |i: usize| place.key("channels").index(i);
         let named: Vec<_> = normal.used().iter().enumerate().map(|(i, n)| (n.as_str(), at(i))).collect();
-        images.look("normal", &normal.image, &named, &place, faults);
+        images.look(NORMAL, &normal.image, &named, &place, faults);
     }
     if let Some(sbrdf) = &request.sbrdf {
         sbrdf::look(sbrdf, path, &mut images, faults);
