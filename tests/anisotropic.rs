@@ -32,6 +32,34 @@ fn check(bound: &Bound, table: Table, tolerance: f64) {
     assert!(others.is_empty(), "{others:?}");
 }
 
+/// The split sum of an anisotropic lobe: over both widths, with one of them fixed, and on the diagonal that of one width.
+#[test]
+fn split_sum_over_view_azimuth_and_both_widths() {
+    let angles =
+        || vec![axis("mu", 3, Texel::Center), axis("phi", 2, Texel::Endpoint).over([0.0, FRAC_PI_2])];
+    let width = |id: &str| axis(id, 2, Texel::Endpoint).over([0.2, 0.7]);
+    let both: Vec<Axis> = angles().into_iter().chain([width("alpha_x"), width("alpha_y")]).collect();
+    let one: Vec<Axis> = angles().into_iter().chain([width("alpha_x")]).collect();
+    let bound = request("dfg", "ggx", "{}", both.clone()).unwrap();
+    let fixed = request("dfg", "ggx", r#"{"alpha_y": 0.7}"#, one.clone()).unwrap();
+    let round = request("dfg", "ggx", r#"{"alpha": 0.7}"#, vec![axis("mu", 3, Texel::Center)]).unwrap();
+    let value = |bound: &Bound, at: &[f64]| bound.baker.texel(at, 1e-8).unwrap().value;
+    for phi in [0.0, 0.6] {
+        for c in 0..2 {
+            let (a, b) = (value(&bound, &[0.3, phi, 0.2, 0.7])[c], value(&fixed, &[0.3, phi, 0.2])[c]);
+            near!(a, b, ASKED_6, "fixed width, channel {c}");
+            let (a, b) = (value(&bound, &[0.3, phi, 0.7, 0.7])[c], value(&round, &[0.3])[c]);
+            near!(a, b, ASKED_6, "one width, channel {c}");
+        }
+    }
+    let along = [0.0, FRAC_PI_2].map(|phi| value(&bound, &[0.3, phi, 0.2, 0.7])[0]);
+    assert!((along[0] - along[1]).abs() > 0.01, "the azimuth matters: {along:?}");
+    // one width alone leaves the other open
+    assert!(matches!(request("dfg", "ggx", "{}", one), Err(BindError::MissingAxis { .. })));
+    let table = bake(&bound, 1e-5).unwrap();
+    check(&bound, table, 1e-5);
+}
+
 #[test]
 fn albedo_over_view_azimuth_and_both_widths() {
     let axes = vec![

@@ -123,6 +123,8 @@ pub static QUANTITIES: &[Quantity] = &[
     base("u", "u", "1", "uniform random number", [0.0, 1.0]),
     base("v", "v", "1", "second uniform random number", [0.0, 1.0]),
     base("g", "g", "1", "mean cosine of a phase function", [-1.0, 1.0]),
+    base("draine_alpha", "alpha", "1", "weight of cos^2 in Draine's phase function", [0.0, 100.0]),
+    base("diameter", "d", "um", "diameter of the droplets of fog and cloud", [5.0, 50.0]),
     base("deflection", "theta", "rad", "angle between the directions of travel; 0 is forward", [0.0, PI]),
     base("theta_h", "theta_h", "rad", "angle of the half vector to the normal", [0.0, FRAC_PI_2]),
     base("theta_d", "theta_d", "rad", "angle of the half vector to both directions", [0.0, FRAC_PI_2]),

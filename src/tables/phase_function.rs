@@ -78,7 +78,7 @@ pub static INFO: TableInfo = TableInfo {
     least_tolerance: |_| 0.0,
     blended: true,
     notes: "theta is the angle between the directions of travel: 0 is forward. Some renderers pass the cosine of two directions that both point away, \
-        which has the other sign. Axes: deflection, and g.",
+        which has the other sign. Axes: deflection, and the numbers of the phase function: g, draine_alpha; diameter of fog.",
     bind,
 };
 
@@ -97,14 +97,14 @@ pub struct Phase {
 }
 
 impl Phase {
-    /// From the parameters of a table kind; `g` from an axis, if one sweeps it.
+    /// From the parameters of a table kind.
     ///
     /// # Errors
     /// [`ParamError`] for a kind that does not declare them.
-    pub fn new(params: &Params, g: Option<f64>) -> Result<Phase, ParamError> {
+    pub fn new(params: &Params) -> Result<Phase, ParamError> {
         Ok(Phase {
             id: params.choice("phase")?,
-            g: g.map_or_else(|| params.number("g"), Ok)?,
+            g: params.number("g")?,
             alpha: params.number("draine_alpha")?,
             diameter: params.number("diameter")?,
         })
@@ -145,25 +145,75 @@ impl Phase {
     }
 }
 
+/// A phase function whose numbers follow the axes of a grid.
+#[derive(Debug, Clone)]
+pub struct Swept {
+    params: Params,
+    /// Number of the axis, and what it sweeps.
+    axes: Vec<(usize, &'static str)>,
+}
+
+impl Swept {
+    /// From a spec.
+    ///
+    /// # Errors
+    /// [`BindError::IdleAxis`] for an axis of a number that the phase function does not have.
+    pub fn new(spec: &Spec) -> Result<Swept, BindError> {
+        let id = spec.params.choice("phase")?;
+        let own: &[&str] = match id {
+            "henyey-greenstein" => &["g"],
+            "draine" => &["g", "draine_alpha"],
+            "fog" => &["diameter"],
+            _ => &[],
+        };
+        let mut axes = Vec::new();
+        for number in PARAMS.iter().map(|p| p.id).filter(|id| spec.axis(id).is_some()) {
+            if !own.contains(&number) {
+                let coordinates = spec.kind.coordinates.iter().chain(own).copied().collect::<Vec<_>>();
+                let allowed = coordinates.join(", ");
+                return Err(BindError::IdleAxis { kind: spec.kind.id, axis: number, allowed });
+            }
+            axes.extend(spec.axis(number).map(|i| (i, number)));
+        }
+        Ok(Swept { params: spec.params.clone(), axes })
+    }
+
+    /// The axes that sweep its numbers.
+    #[must_use]
+    pub fn axes(&self) -> &[(usize, &'static str)] {
+        &self.axes
+    }
+
+    /// The phase function at a point.
+    ///
+    /// # Errors
+    /// As [`Phase::new`].
+    pub fn at(&self, at: &[f64]) -> Result<Phase, ParamError> {
+        let mut params = self.params.clone();
+        for (axis, id) in &self.axes {
+            params.set(id, at[*axis]);
+        }
+        Phase::new(&params)
+    }
+}
+
 struct Table {
     deflection: usize,
-    g: Option<usize>,
-    params: Params,
+    swept: Swept,
     relative: bool,
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     Ok(Box::new(Table {
         deflection: spec.coordinate("deflection")?,
-        g: spec.axis("g"),
-        params: spec.params.clone(),
+        swept: Swept::new(spec)?,
         relative: spec.roles().contains(&Role::Phase { relative: true }),
     }))
 }
 
 impl Baker for Table {
     fn texel(&self, at: &[f64], _tolerance: f64) -> Result<Estimate, TexelError> {
-        let phase = Phase::new(&self.params, self.g.map(|i| at[i]))?;
+        let phase = self.swept.at(at)?;
         let mut value = [0.0; MAX_CHANNELS];
         value[0] = phase.at(at[self.deflection]) / if self.relative { phase.largest() } else { 1.0 };
         super::closed_form(value, 1)
@@ -171,8 +221,8 @@ impl Baker for Table {
 
     fn rule(&self) -> String {
         if self.relative
-            && self.g.is_none()
-            && let Ok(phase) = Phase::new(&self.params, None)
+            && self.swept.axes.is_empty()
+            && let Ok(phase) = self.swept.at(&[])
         {
             return format!("closed form, divided by {:e} 1/sr", phase.largest());
         }

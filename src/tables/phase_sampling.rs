@@ -1,13 +1,12 @@
 //! Angles with the density of a phase function: the inverse of its cumulative distribution.
 
 use super::default_axes::axis;
-use super::phase_function::{PARAMS, Phase, SOURCES};
+use super::phase_function::{PARAMS, SOURCES, Swept};
 use super::{
     Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Spec, TableInfo, TexelError,
 };
 use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
-use crate::models::Params;
 use std::f64::consts::{PI, TAU};
 
 /// Registry entry.
@@ -46,7 +45,7 @@ pub static INFO: TableInfo = TableInfo {
     axes: default_axes,
     least_tolerance: |_| 0.0,
     blended: true,
-    notes: "u = 1 is forward. Axes: u, and g.",
+    notes: "u = 1 is forward. Axes: u, and the numbers of the phase function: g, draine_alpha; diameter of fog.",
     bind,
 };
 
@@ -57,30 +56,30 @@ fn default_axes(setting: &Setting<'_>) -> Vec<Axis> {
 
 struct Table {
     u: usize,
-    g: Option<usize>,
-    params: Params,
+    swept: Swept,
+    phase: &'static str,
     angle: bool,
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     Ok(Box::new(Table {
         u: spec.coordinate("u")?,
-        g: spec.axis("g"),
-        params: spec.params.clone(),
+        swept: Swept::new(spec)?,
+        phase: spec.params.choice("phase")?,
         angle: spec.roles().contains(&Role::PhaseQuantile { angle: true }),
     }))
 }
 
 impl Baker for Table {
     fn texel(&self, at: &[f64], _tolerance: f64) -> Result<Estimate, TexelError> {
-        let phase = Phase::new(&self.params, self.g.map(|i| at[i]))?;
+        let phase = self.swept.at(at)?;
         let cos = phase.sample(at[self.u]);
         let mut value = [0.0; MAX_CHANNELS];
         value[0] = if self.angle { libm::acos(cos) } else { cos };
         let mut e = Estimate::exact(value);
         // roots are found to the rounding of the distribution, whose slope is 2 pi p; an error of the cosine is more of the
         // angle near 0 or pi
-        let root = match self.params.choice("phase")? {
+        let root = match self.phase {
             "fog" => 1e-12,
             "draine" => 1e-14,
             _ => 0.0,
@@ -92,7 +91,7 @@ impl Baker for Table {
     }
 
     fn rule(&self) -> String {
-        match self.params.choice("phase").unwrap_or_default() {
+        match self.phase {
             "draine" | "fog" => "Newton's method in a bracket on the closed cumulative distribution",
             _ => "closed form",
         }

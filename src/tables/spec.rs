@@ -338,8 +338,15 @@ fn check_axes(
         let param = model.and_then(|(info, _)| info.measured(needed));
         param.is_some_and(|p| given.keys().any(|key| p.is_called(key)))
     };
+    // both widths stand for the one that they follow, swept or given
+    let followed = |needed: &str| {
+        let Some((info, _)) = model else { return false };
+        let told = |id: &str| bases.contains(&id) || given.keys().any(|key| key == id);
+        let mut followers = info.measured(needed).into_iter().flat_map(|p| info.followers(p.id)).peekable();
+        followers.peek().is_some() && followers.all(told)
+    };
     for needed in kind.coordinates {
-        if !bases.contains(needed) && !fixed(needed) {
+        if !bases.contains(needed) && !fixed(needed) && !followed(needed) {
             let got = axis_ids(grid);
             return Err(BindError::MissingAxis { kind: kind.id, needed, got });
         }

@@ -6,7 +6,7 @@ use super::lobes::Lobes;
 use super::{Case, Law, Outcome, Watch, seeds};
 use crate::integrate::{Sums, line};
 use crate::tables::integral::{Functional, integrate};
-use crate::tables::phase_function::Phase;
+use crate::tables::phase_function::Swept;
 use crate::tables::profile::Profile;
 use crate::tables::role::{Lobe, Per, Side};
 use crate::tables::{Role, Spec, diffusion_profile, importance, place};
@@ -127,11 +127,22 @@ fn kernel(case: &Case<'_>) -> Outcome {
 /// `2 pi int p sin theta dtheta = 1`, of the density also where the table holds it relative to its peak.
 fn sphere(case: &Case<'_>) -> Outcome {
     let spec = &case.bound.spec;
-    let axis = spec.axis("g");
-    let values: Vec<Option<f64>> = axis.map_or(vec![None], |i| rows(case, i).into_iter().map(Some).collect());
+    let Ok(swept) = Swept::new(spec) else { return nothing() };
+    let corner: Vec<f64> = case.table.grid.texel(0).values().to_vec();
+    let place = |axis: usize, value: f64| {
+        let mut at = corner.clone();
+        at[axis] = value;
+        at
+    };
+    let lines = swept.axes().iter();
+    let mut places: Vec<Vec<f64>> =
+        lines.flat_map(|(i, _)| rows(case, *i).into_iter().map(|v| place(*i, v))).collect();
+    if places.is_empty() {
+        places.push(corner.clone());
+    }
     let mut watch = Watch::default();
-    for g in values {
-        let Ok(phase) = Phase::new(&spec.params, g) else { return nothing() };
+    for start in places {
+        let Ok(phase) = swept.at(&start) else { return nothing() };
         let relative = spec.roles().contains(&Role::Phase { relative: true });
         let peak = if relative { phase.largest() } else { 1.0 };
         let deflection = spec.axis("deflection").unwrap_or(0);
@@ -140,14 +151,15 @@ fn sphere(case: &Case<'_>) -> Outcome {
         let breaks: Vec<f64> =
             near.into_iter().chain([PI / 2.0]).chain(near.into_iter().rev().map(|x| PI - x)).collect();
         let sum = add_up(case, &breaks, 1, 1e-10, |theta| {
-            let mut at = vec![0.0; spec.grid.axes().len()];
-            if let (Some(i), Some(g)) = (axis, g) {
-                at[i] = g;
-            }
+            let mut at = start.clone();
             at[deflection] = theta;
             (at, 2.0 * PI * libm::sin(theta) * peak)
         });
-        tighten(&mut watch, &sum, 0..1, 1.0, || g.map_or("all angles".to_owned(), |g| format!("g = {g}")));
+        let told = || match swept.axes() {
+            [] => "all angles".to_owned(),
+            axes => axes.iter().map(|(i, id)| format!("{id} = {}", start[*i])).collect::<Vec<_>>().join(", "),
+        };
+        tighten(&mut watch, &sum, 0..1, 1.0, told);
     }
     watch.outcome("no row")
 }

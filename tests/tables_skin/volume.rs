@@ -39,6 +39,41 @@ fn phase_functions_agree_with_high_precision_values() {
     }
 }
 
+/// The numbers of a phase function are axes: the same as fixed; those that it does not have are refused.
+#[test]
+fn numbers_of_phase_functions_are_axes() {
+    let numbers = [
+        ("fog", "diameter", 12.0, [5.0, 50.0]),
+        ("draine", "draine_alpha", 2.0, [0.0, 10.0]),
+        ("draine", "g", 0.4, [-0.9, 0.9]),
+    ];
+    for (kind, layout, coordinate, x) in
+        [("phase-function", "relative", "deflection", 0.3), ("phase-sampling", "cosine", "u", 0.7)]
+    {
+        for (phase, number, value, [lo, hi]) in numbers {
+            let along = (coordinate, 0.0, 1.0);
+            let swept = format!(r#"{{"phase": "{phase}"}}"#);
+            let swept = table(kind, layout, &swept, &[along, (number, lo, hi)]);
+            let fixed = format!(r#"{{"phase": "{phase}", "{number}": {value}}}"#);
+            let fixed = table(kind, layout, &fixed, &[along]);
+            let [a, b] = [texel(&swept, &[x, value], 1e-9), texel(&fixed, &[x], 1e-9)].map(|e| e.value[0]);
+            close(&format!("{kind} {phase} {number}"), a, b, 0.0);
+        }
+        let request = brdfbake::tables::spec::Request {
+            kind: kind.to_owned(),
+            params: serde_json::from_str(r#"{"phase": "fog"}"#).unwrap(),
+            axes: Some([coordinate, "g"].map(|id| crate::common::axis(id, 4, Texel::Endpoint)).to_vec()),
+            ..Default::default()
+        };
+        let why = request.bind().unwrap_err().to_string();
+        assert!(why.contains("nothing in it depends on axis g") && why.contains("diameter"), "{why}");
+    }
+    let fog = table("phase-function", "density", r#"{"phase": "fog"}"#, &[ANGLE, ("diameter", 5.0, 50.0)]);
+    let baked = bake(&fog, 1e-9).unwrap();
+    let (_, findings) = verify::check(&fog, baked, 1e-9, &[]).unwrap();
+    assert!(findings.is_empty(), "{findings:?}");
+}
+
 #[test]
 fn samples_of_phase_functions_agree_with_high_precision_values() {
     for row in rows("points_volume", "hg_sample_cos") {

@@ -29,7 +29,7 @@ enum Phase {
 
 impl Phase {
     fn of(asked: &Asked<'_>) -> Option<Phase> {
-        let number = |id: &str| asked.spec.params.number(id).ok();
+        let number = |id: &str| asked.spec.number(id, asked.at).ok();
         let g = asked.spec.number("g", asked.at).ok()?;
         Some(match asked.spec.params.choice("phase").ok()? {
             "isotropic" => Phase::Isotropic,
