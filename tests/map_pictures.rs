@@ -1,6 +1,7 @@
 //! Images of all kinds that people have, and what is damaged.
 #![allow(clippy::unwrap_used, clippy::float_cmp, reason = "test")]
 
+use crate::tolerance::{HELD_AS_SINGLE};
 use brdfbake::picture::{PictureError, read_bytes};
 
 /// A PNG of these bytes a row.
@@ -106,13 +107,13 @@ fn pictures_of_all_kinds_are_filtered_or_refused() {
     let path = save("wide.png", &png([2, 2], ColorType::Grayscale, BitDepth::Sixteen, None, &wide));
     let found = bake(None, RoughnessInput::new(path)).unwrap();
     let expected = [0x4000, 0x4001, 0x8000, 0xffff].map(|v| f64::from(v) / 65535.0);
-    assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{found:?}");
+    assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < HELD_AS_SINGLE), "{found:?}");
     // a palette is what its colours are
     let palette = vec![255, 51, 0, 0, 204, 0];
     let indexed = png([2, 1], ColorType::Indexed, BitDepth::One, Some(palette), &[0b0100_0000]);
     let path = save("palette.png", &indexed);
     let found = bake(None, RoughnessInput::new(path)).unwrap();
-    assert!((found[0] - 0.2).abs() < 1e-6 && (found[1] - 0.8).abs() < 1e-6, "{found:?}");
+    assert!((found[0] - 0.2).abs() < HELD_AS_SINGLE && (found[1] - 0.8).abs() < HELD_AS_SINGLE, "{found:?}");
     // grey has no directions in it
     let grey = png([4, 4], ColorType::Grayscale, BitDepth::Eight, None, &[200; 16]);
     let message = bake(Some(Input::new(save("grey.png", &grey))), number()).unwrap_err();

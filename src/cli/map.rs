@@ -45,7 +45,7 @@ pub struct Args {
     /// Channel of the second number, of lobes that have two (with --anisotropic).
     #[arg(long, value_name = "NAME", requires = "from")]
     second_channel: Option<String>,
-    /// Channel of the angle of the first axis from the tangent: codes 0..1 are half a turn.
+    /// Channel of the angle of the first axis from the tangent: codes 0..1 are half a turn, pi radians.
     #[arg(long, value_name = "NAME", requires = "second_channel")]
     angle_channel: Option<String>,
     /// Numbers that the codes 0 and 1 stand for.

@@ -1,5 +1,6 @@
 //! Plots of lobes, albedos and hemispheres, as they are seen.
 
+use crate::tolerance::{SHOWN};
 use super::support::{brdfbake, code, err, folder, text};
 use std::path::Path;
 
@@ -106,7 +107,7 @@ fn albedos_are_curves_over_the_view() {
     let e: f64 = super::support::out(&o).lines().nth(1).unwrap().split('\t').nth(1).unwrap().parse().unwrap();
     let told = drawn.split("ggx: E ").nth(1).unwrap().split(" at grazing, ").nth(1).unwrap();
     let told: f64 = told.split(' ').next().unwrap().parse().unwrap();
-    assert!((told - e).abs() < 2e-4, "{told} {e}");
+    assert!((told - e).abs() < SHOWN, "{told} {e}");
 }
 
 #[test]
