@@ -1,7 +1,10 @@
 //! Other lobes as GGX: values by sums over the hemisphere that another program made.
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "test")]
 
-use crate::tolerance::{DIGITS_LOST, FEW_ROUNDINGS, INVERTED_9, LOBE_DIGITS, LOBE_DIGITS_NINE, LOBE_DIGITS_SIX, LOBE_ENERGY, LOBE_SUM};
+use crate::tolerance::{
+    DIGITS_LOST, FEW_ROUNDINGS, INVERTED_9, LOBE_DIGITS, LOBE_DIGITS_NINE, LOBE_DIGITS_SIX, LOBE_ENERGY,
+    LOBE_SUM,
+};
 use brdfbake::functions::conversion::{By, CONVERSIONS, conversion, gltf_anisotropy};
 use brdfbake::terms::half_vectors::{Lobe, distance};
 
@@ -175,7 +178,10 @@ fn lobes_are_told_in_other_numbers() {
     // what is one family in other numbers comes back, and what `to-ggx` tells is told here
     let openpbr = told("disney", [0.4, 0.3], "openpbr", By::Nearest);
     let back = told("openpbr", openpbr.numbers, "disney", By::Nearest);
-    assert!(openpbr.distance < DIGITS_LOST && (0..2).all(|i| (back.numbers[i] - [0.4, 0.3][i]).abs() < INVERTED_9));
+    assert!(
+        openpbr.distance < DIGITS_LOST
+            && (0..2).all(|i| (back.numbers[i] - [0.4, 0.3][i]).abs() < INVERTED_9)
+    );
     let phong = told("phong", [25.0; 2], "smoothness", By::Nearest);
     let ggx = of("phong").convert([25.0; 2], By::Nearest);
     assert!((phong.numbers[0] - (1.0 - ggx.alphas[0].sqrt())).abs() < FEW_ROUNDINGS, "{phong:?}");

@@ -1,7 +1,7 @@
 //! Rough dielectrics that transmit: R and T against reference values, reciprocity, reversibility, samplers, limits.
 #![allow(clippy::unwrap_used, clippy::float_cmp, reason = "test; exact values are asserted exactly")]
 
-use crate::tolerance::{DIGITS_LOST, DIGIT_LOST, DRAWN, INTEGRAL_5, INTEGRAL_8, INTEGRAL_9, near};
+use crate::tolerance::{DIGIT_LOST, DIGITS_LOST, DRAWN, INTEGRAL_5, INTEGRAL_8, INTEGRAL_9, near};
 use brdfbake::integrate::View;
 use brdfbake::integrate::sobol::Sobol;
 use brdfbake::math::frame;

@@ -12,4 +12,5 @@ mod programs;
 mod readme;
 mod recipes;
 mod registry;
+mod tolerance;
 mod writes;

@@ -1,7 +1,7 @@
 //! Images of all kinds that people have, and what is damaged.
 #![allow(clippy::unwrap_used, clippy::float_cmp, reason = "test")]
 
-use crate::tolerance::{HELD_AS_SINGLE};
+use crate::tolerance::HELD_AS_SINGLE;
 use brdfbake::picture::{PictureError, read_bytes};
 
 /// A PNG of these bytes a row.

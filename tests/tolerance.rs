@@ -181,7 +181,7 @@ pub(crate) const AXIS_STEP: f64 = 1e-6;
 // Lobes of parameter maps, against sums over the hemisphere that other programs made.
 
 /// What a lobe reflects, by a sum over a grid of directions in a test.
-pub(crate) const LOBE_SUM: f64 = 1e-3;
+pub(crate) const LOBE_OVER_DIRECTIONS: f64 = 1e-3;
 /// A number that a picture shows with four digits.
 pub(crate) const SHOWN: f64 = 2e-4;
 /// Four printed digits, and what the grid of that program leaves of a minimum.

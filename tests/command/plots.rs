@@ -1,7 +1,7 @@
 //! Plots of lobes, albedos and hemispheres, as they are seen.
 
-use crate::tolerance::{SHOWN};
 use super::support::{brdfbake, code, err, folder, text};
+use crate::tolerance::SHOWN;
 use std::path::Path;
 
 const COLOURS: [&str; 3] = ["#0072b2", "#d55e00", "#009e73"];
