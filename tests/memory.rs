@@ -344,7 +344,7 @@ fn maps_take_what_their_plan_says() {
     for (side, keys) in [
         (256, "outputs = ['ktx2']"),
         (128, "outputs = ['ktx2:normal=bc5', 'png', 'exr']\nnormals = 'fit'\nshape = 'anisotropic'"),
-        (160, "sbrdf = { model = 'lafortune', lobes = 2, base = 'r.png' }\noutputs = ['dds']"),
+        (320, "sbrdf = { model = 'lafortune', lobes = 2, base = 'r.png' }\noutputs = ['dds']"),
     ] {
         let [(told, taken), (least, small)] = [side, 16].map(|side| {
             let plan = map(side, keys, folder.path());

@@ -136,7 +136,7 @@ fn readers_that_cannot_be_told_say_so() {
     let s = suggested("three", "three-ltc-magnitude", 1e-3, false);
     assert!(s.found.is_none() && s.notes[0].contains("ltc-magnitude"), "{s:?}");
     let s = suggested("bevy", "bevy-dfg", 1e-6, true);
-    assert!(s.found.is_none() && s.notes.iter().any(|n| n.contains("one axis alone leaves more")), "{s:?}");
+    assert!(s.found.is_none() && s.notes.iter().any(|n| n.contains("alone leaves")), "{s:?}");
     for e in brdfbake::recipe::ENGINES {
         match e.reader {
             Reader::Shader(language) => assert!(["glsl", "hlsl", "wgsl"].contains(&language), "{}", e.id),
