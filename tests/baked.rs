@@ -9,6 +9,7 @@ mod laws;
 mod listed;
 mod ltc;
 mod numerics;
+mod sample;
 mod size;
 mod sweep;
 mod tables;

@@ -14,8 +14,8 @@ use super::map::PlannedMap;
 use super::table::PlannedTable;
 use serde_json::Value as Json;
 
-/// Version of the numbers: raised by any change after which the same request gives other texels or errors. What was kept of older
-/// versions is then baked anew.
+/// Version of the numbers: raised by any change after which the same request gives other texels, errors or bytes of files. What was
+/// kept of older versions is then baked anew.
 pub const NUMERICS: u32 = 2;
 
 /// A file that the numbers of a table depend on.
