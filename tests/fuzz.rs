@@ -39,28 +39,37 @@ fn found(reader: &Reader) -> Vec<PathBuf> {
     paths
 }
 
-/// Does it end without a panic?
-fn survives(reader: &Reader, bytes: &[u8]) -> bool {
-    catch_unwind(AssertUnwindSafe(|| (reader.read)(bytes))).is_ok()
+/// Is it taken? None for a panic.
+fn read(reader: &Reader, bytes: &[u8]) -> Option<bool> {
+    catch_unwind(AssertUnwindSafe(|| (reader.read)(bytes))).ok()
+}
+
+/// Inputs of a reader, and those of them that it took.
+#[derive(Default)]
+struct Counts {
+    all: usize,
+    taken: usize,
 }
 
 /// Reads changed seeds while `more` says so; the inputs that made it panic, as files.
-fn fuzz(reader: &Reader, seed: u64, mut more: impl FnMut(usize) -> bool) -> (usize, Vec<PathBuf>) {
+fn fuzz(reader: &Reader, seed: u64, mut more: impl FnMut(usize) -> bool) -> (Counts, Vec<PathBuf>) {
     let seeds = (reader.seeds)();
     assert!(!seeds.is_empty(), "{} has no seeds", reader.id);
     let mut random = Random(seed);
     let mut failed = Vec::new();
-    let mut count = 0;
-    while more(count) && failed.len() < SHOWN {
+    let mut count = Counts::default();
+    while more(count.all) && failed.len() < SHOWN {
         let bytes = change::change(&mut random, &seeds, reader.words);
-        if !survives(reader, &bytes) {
+        let read = read(reader, &bytes);
+        if read.is_none() {
             let folder = repository().join("target/fuzz").join(reader.id);
             std::fs::create_dir_all(&folder).unwrap();
-            let path = folder.join(format!("{seed}-{count}"));
+            let path = folder.join(format!("{seed}-{}", count.all));
             std::fs::write(&path, &bytes).unwrap();
             failed.push(path);
         }
-        count += 1;
+        count.all += 1;
+        count.taken += usize::from(read == Some(true));
     }
     (count, failed)
 }
@@ -69,12 +78,19 @@ fn fuzz(reader: &Reader, seed: u64, mut more: impl FnMut(usize) -> bool) -> (usi
 fn changed_files_are_errors() {
     for reader in READERS {
         for path in found(reader) {
-            assert!(survives(reader, &std::fs::read(&path).unwrap()), "{}", path.display());
+            assert!(read(reader, &std::fs::read(&path).unwrap()).is_some(), "{}", path.display());
         }
         let unchanged = (reader.seeds)();
-        assert!(unchanged.iter().all(|bytes| survives(reader, bytes)), "{}: a seed", reader.id);
-        let (_, failed) = fuzz(reader, 1, |n| n < SHORT);
+        assert!(
+            unchanged.iter().any(|bytes| read(reader, bytes) == Some(true)),
+            "{}: no seed is taken",
+            reader.id
+        );
+        let (count, failed) = fuzz(reader, 1, |n| n < SHORT);
         assert!(failed.is_empty(), "{} panics on {failed:?}", reader.id);
+        // changes that are all refused, or all taken, reach nothing
+        let Counts { all, taken } = count;
+        assert!(taken > 0 && taken < all, "{}: {taken} of {all} are taken", reader.id);
     }
 }
 
@@ -89,7 +105,13 @@ fn changed_files_are_errors_for_long() {
     for reader in READERS {
         let begun = Instant::now();
         let (count, failed) = fuzz(reader, seed, |_| begun.elapsed() < seconds);
-        println!("{}: {count} inputs, {} made it panic", reader.id, failed.len());
+        println!(
+            "{}: {} inputs, {} taken, {} made it panic",
+            reader.id,
+            count.all,
+            count.taken,
+            failed.len()
+        );
         all.extend(failed);
     }
     println!("{} s", start.elapsed().as_secs());
