@@ -29,7 +29,7 @@ pub fn visit(mu_o: f64, floor: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
             continue;
         }
         nodes.panel = panel;
-        double_exponential(level, |s, rest, weight| {
+        for &[s, rest, weight] in rule(level) {
             // both distances are exact at their own end
             let mu_i = lo + (hi - lo) * s;
             let from_normal = (1.0 - hi) + (hi - lo) * rest;
@@ -38,21 +38,14 @@ pub fn visit(mu_o: f64, floor: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
                 row(&mut nodes, part, mu_i, sin_i, (hi - lo) * weight);
                 visit(&nodes);
             }
-        });
-    }
-}
-
-/// Nodes in (0, 1) as `(s, 1 - s, weight)`, about 4 a level.
-fn double_exponential(level: f64, mut add: impl FnMut(f64, f64, f64)) {
-    for &[s, rest, weight] in rule(level) {
-        add(s, rest, weight);
+        }
     }
 }
 
 /// Most steps on either side.
 const MOST: usize = 200;
 
-/// They depend on the level alone, so each rule is made once a process.
+/// Nodes in (0, 1) as `(s, 1 - s, weight)`, about 4 a level. They depend on the level alone, so each rule is made once a process.
 fn rule(level: f64) -> &'static [[f64; 3]] {
     static RULES: [OnceLock<Vec<[f64; 3]>>; MOST + 1] = [const { OnceLock::new() }; MOST + 1];
     let half = half_count(level);

@@ -327,7 +327,7 @@ impl Ellipse {
 }
 
 /// `sin(from + step)`, exact in the step from the ends across wo, where it is what counts.
-fn turned(from: f64, step: f64) -> f64 {
+pub(super) fn turned(from: f64, step: f64) -> f64 {
     if (from - PI).abs() <= 0.0 {
         -libm::sin(step)
     } else if from <= 0.0 || from >= 2.0 * PI {
@@ -337,6 +337,6 @@ fn turned(from: f64, step: f64) -> f64 {
     }
 }
 
-fn square(x: f64) -> f64 {
+pub(super) fn square(x: f64) -> f64 {
     x * x
 }

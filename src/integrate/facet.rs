@@ -24,14 +24,6 @@ pub struct Row {
 }
 
 impl Row {
-    /// Largest azimuth with `wm.z > 0`.
-    #[must_use]
-    pub fn horizon(&self) -> f64 {
-        let product = self.c * self.mu;
-        let square = (self.s - self.c) * (self.s + self.c);
-        if square > 0.0 && product < self.sin * self.s { libm::atan2(square.sqrt(), -product) } else { PI }
-    }
-
     /// The facet normal at an azimuth; `tilt` is the sine of its angle from the macronormal at `psi = 0`, so that slopes
     /// of normals near the macronormal are not differences.
     #[must_use]

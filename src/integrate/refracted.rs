@@ -30,7 +30,7 @@
 //! tail is a Gaussian, takes two levels more. The beta form of masking has a broken power of mu_t at the horizon of wt, and converges
 //! algebraically beyond the critical angle: 2e-9 at level 15.
 
-use super::ellipse::GRAZING;
+use super::ellipse::{GRAZING, square, turned};
 use super::graded::{Graded, Order, share_scales};
 use super::stop::Trust;
 use super::view::View;
@@ -369,19 +369,4 @@ fn halves(mut ends: Vec<End>) -> Vec<Panel> {
         [panel(i, half), panel(i + 1, -half)]
     };
     (0..ends.len().saturating_sub(1)).flat_map(of_pair).collect()
-}
-
-/// `sin(from + step)`, exact in the step from the ends across wo.
-fn turned(from: f64, step: f64) -> f64 {
-    if (from - PI).abs() <= 0.0 {
-        -libm::sin(step)
-    } else if from <= 0.0 || from >= 2.0 * PI {
-        libm::sin(step)
-    } else {
-        libm::sin(from + step)
-    }
-}
-
-fn square(x: f64) -> f64 {
-    x * x
 }
