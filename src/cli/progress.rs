@@ -3,7 +3,7 @@
 use super::terminal::{Paint, paint};
 use super::{Exit, Failure, output};
 use crate::cancel::Cancel;
-use crate::pipeline::{Event, From, Phase, Progress, Recovery};
+use crate::pipeline::{Event, KeptIn, Phase, Progress, Recovery};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -216,10 +216,10 @@ fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
-fn kept(from: From) -> &'static str {
+fn kept(from: KeptIn) -> &'static str {
     match from {
-        From::Folder => "unchanged, its files are there (--force bakes it again)",
-        From::Cache => "from the cache (--force bakes it again)",
+        KeptIn::Folder => "unchanged, its files are there (--force bakes it again)",
+        KeptIn::Cache => "from the cache (--force bakes it again)",
     }
 }
 

@@ -1,6 +1,6 @@
 //! What a run tells while it works. One event is one line of `--message-format json`.
 
-use super::{From, Outcome, Recovery};
+use super::{KeptIn, Outcome, Recovery};
 use crate::grid::provenance::{ChoiceRecord, LawRecord, SizeRecord};
 use crate::grid::table::Extreme;
 use crate::plan::{Plan, PlannedMap, PlannedTable};
@@ -126,7 +126,7 @@ pub enum Event<'a> {
         /// Its number in the plan.
         index: usize,
         /// Where they were.
-        from: From,
+        from: KeptIn,
         /// Texels that missed the tolerance.
         missed: u64,
         /// What came of every law.
@@ -141,7 +141,7 @@ pub enum Event<'a> {
         /// Its number in the plan.
         index: usize,
         /// Where they were.
-        from: From,
+        from: KeptIn,
     },
     /// The cache could not be written; the bake goes on without it.
     CacheFault {
@@ -295,7 +295,7 @@ pub struct Extremum<'a> {
     pub at: &'a [(String, f64)],
 }
 
-impl<'a> std::convert::From<&'a Extreme> for Extremum<'a> {
+impl<'a> From<&'a Extreme> for Extremum<'a> {
     fn from(e: &'a Extreme) -> Self {
         Extremum { largest: e.value, channel: &e.channel, at: &e.at }
     }
@@ -337,7 +337,7 @@ pub struct ChoiceEntry {
     pub practical_mean: Option<f64>,
 }
 
-impl std::convert::From<&ChoiceRecord> for ChoiceEntry {
+impl From<&ChoiceRecord> for ChoiceEntry {
     fn from(c: &ChoiceRecord) -> Self {
         ChoiceEntry {
             texels: c.texels.clone(),

@@ -37,7 +37,7 @@ mod work;
 pub mod write_scene;
 
 pub use crate::plan::MANIFEST;
-pub use again::{CACHE_LIMIT, Cache, CacheSize, From};
+pub use again::{CACHE_LIMIT, Cache, CacheSize, KeptIn};
 pub use companion::{Companion, Seen};
 pub use event::{Event, Extremum, MapPlanEntry, Phase, PlanEntry, Progress, Silent};
 pub use in_memory::{Baked, InMemoryError, bake, bake_until};

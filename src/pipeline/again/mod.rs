@@ -23,7 +23,7 @@ use unit::{Part, Unit};
 /// Where a unit was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum From {
+pub enum KeptIn {
     /// In the output folder.
     Folder,
     /// In the cache.
@@ -35,8 +35,8 @@ pub(super) struct Again<'a> {
     plan: &'a Plan,
     cache: Option<&'a Cache>,
     baked: Vec<Unit>,
-    tables: Vec<Option<(TableRecord, From)>>,
-    maps: Vec<Option<(MapEntry, From)>>,
+    tables: Vec<Option<(TableRecord, KeptIn)>>,
+    maps: Vec<Option<(MapEntry, KeptIn)>>,
 }
 
 impl<'a> Again<'a> {
@@ -63,7 +63,7 @@ impl<'a> Again<'a> {
                 for file in &entry.files {
                     files.keep(&file.name, file.bytes, &file.blake3)?;
                 }
-                again.take(&unit, entry, From::Folder);
+                again.take(&unit, entry, KeptIn::Folder);
                 continue;
             }
             let cached = again.cache.filter(|_| wanted).and_then(|c| c.read(&unit.key));
@@ -72,7 +72,7 @@ impl<'a> Again<'a> {
                     for (file, bytes) in entry.files.iter().zip(&blobs) {
                         files.stage(&file.name, bytes)?;
                     }
-                    again.take(&unit, entry, From::Cache);
+                    again.take(&unit, entry, KeptIn::Cache);
                 }
                 _ => again.baked.push(unit),
             }
@@ -80,7 +80,7 @@ impl<'a> Again<'a> {
         Ok(again)
     }
 
-    fn take(&mut self, unit: &Unit, entry: Entry, from: From) {
+    fn take(&mut self, unit: &Unit, entry: Entry, from: KeptIn) {
         let (mut tables, mut maps) = (entry.tables.into_iter(), entry.maps.into_iter());
         for part in &unit.parts {
             match part {

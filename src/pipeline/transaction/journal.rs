@@ -43,14 +43,18 @@ impl Entry {
 
     /// Are these the bytes of a file?
     pub(super) fn is_at(&self, path: &Path) -> bool {
-        let hash = || {
-            let mut hasher = blake3::Hasher::new();
-            hasher.update_reader(File::open(path).ok()?).ok()?;
-            Some(hasher.finalize().to_hex().to_string())
-        };
-        fs::metadata(path).is_ok_and(|m| m.is_file() && m.len() == self.bytes)
-            && hash().is_some_and(|h| h == self.blake3)
+        holds(path, self.bytes, &self.blake3)
     }
+}
+
+/// Is there a file of this size and hash?
+pub(in crate::pipeline) fn holds(path: &Path, bytes: u64, blake3: &str) -> bool {
+    let hash = || {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update_reader(File::open(path).ok()?).ok()?;
+        Some(hasher.finalize().to_hex().to_string())
+    };
+    fs::metadata(path).is_ok_and(|m| m.is_file() && m.len() == bytes) && hash().is_some_and(|h| h == blake3)
 }
 
 /// Where the files of a transaction are.

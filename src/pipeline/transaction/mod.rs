@@ -34,7 +34,7 @@ mod targets;
 mod tests;
 
 pub use error::TransactionError;
-pub(super) use journal::{is_inside, is_plain};
+pub(super) use journal::{holds, is_inside, is_plain};
 pub use lock::Waiting;
 pub use targets::check;
 
