@@ -70,11 +70,12 @@ static RECENT: Mutex<BTreeMap<String, Arc<AlbedoCurve>>> = Mutex::new(BTreeMap::
 const KEPT: usize = 512;
 
 impl AlbedoCurve {
-    /// The curve of a lobe that `key` names in full (model, parameters and tolerance), made once.
+    /// The curve of a lobe that `key` names in full (model and parameters), made once for a tolerance.
     #[must_use]
     pub fn shared(key: &str, model: &dyn Brdf, tolerance: f64) -> Arc<AlbedoCurve> {
+        let key = format!("{key} {tolerance:e}");
         let lock = || RECENT.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        if let Some(curve) = lock().get(key) {
+        if let Some(curve) = lock().get(&key) {
             return Arc::clone(curve);
         }
         // Made without the lock: two threads may make the same curve, with the same bits.
@@ -83,7 +84,7 @@ impl AlbedoCurve {
         if recent.len() >= KEPT {
             recent.clear();
         }
-        recent.insert(key.to_owned(), Arc::clone(&curve));
+        recent.insert(key, Arc::clone(&curve));
         curve
     }
 
