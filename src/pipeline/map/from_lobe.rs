@@ -44,30 +44,43 @@ impl FromLobe {
         Ok([x, y, distance, gap.largest, gap.gained])
     }
 
-    /// Lobes of one number: each code once where they are few, else read between evenly spaced ones.
-    pub(super) fn single(&self, codes: &[f32]) -> Result<Lobes, MapError> {
-        let mut keys: Vec<u32> = codes.iter().map(|c| c.to_bits()).collect();
+    /// The pairs that occur, in order, with what each becomes: converted one by one up to `most` of them, else read between a grid; and
+    /// what reading costs.
+    fn table(
+        &self,
+        pairs: impl Iterator<Item = Key>,
+        most: usize,
+        sides: [usize; 2],
+    ) -> Result<Table, MapError> {
+        let mut keys: Vec<Key> = pairs.collect();
         keys.sort_unstable();
         keys.dedup();
-        let (rows, between) = if keys.len() <= CODES {
-            let one = |k: &u32| self.convert([f64::from(f32::from_bits(*k)); 2]);
-            let rows: Result<Vec<Row>, ParamError> = keys.par_iter().map(one).collect();
-            (rows?, 0.0)
-        } else {
-            let grid = Grid::new(self, [CODES, 1])?;
-            (keys.iter().map(|k| grid.read([f64::from(f32::from_bits(*k)), 0.0])).collect(), grid.between)
-        };
-        let at = |c: &f32| placed(&keys.binary_search(&c.to_bits()).map_or([0.0; 5], |i| rows[i]), 0.0);
-        let found: Vec<(f32, [f32; 2], [f32; 3])> = codes.par_iter().map(at).collect();
+        let codes = |(a, b): &Key| [a, b].map(|k| f64::from(f32::from_bits(*k)));
+        if keys.len() <= most {
+            let rows: Result<Vec<Row>, ParamError> =
+                keys.par_iter().map(|k| self.convert(codes(k))).collect();
+            return Ok(Table { keys, rows: rows?, between: 0.0 });
+        }
+        let grid = Grid::new(self, sides)?;
+        let rows = keys.iter().map(|k| grid.read(codes(k))).collect();
+        Ok(Table { keys, rows, between: grid.between })
+    }
+
+    /// Lobes of one number.
+    pub(super) fn single(&self, codes: &[f32]) -> Result<Lobes, MapError> {
+        let key = |c: &f32| (c.to_bits(), c.to_bits());
+        let table = self.table(codes.iter().map(key), CODES, [CODES, 1])?;
+        let found: Vec<(f32, [f32; 2], [f32; 3])> =
+            codes.par_iter().map(|c| placed(&table.row(key(c)), 0.0)).collect();
         Ok(Lobes {
             roughness: found.iter().map(|f| f.0).collect(),
             stretch: None,
             costs: found.iter().map(|f| f.2).collect(),
-            between,
+            between: table.between,
         })
     }
 
-    /// Lobes of two numbers: each pair once where they are few, else read between a grid of pairs.
+    /// Lobes of two numbers.
     pub(super) fn pairs(
         &self,
         first: &[f32],
@@ -75,30 +88,35 @@ impl FromLobe {
         angle: Option<&[f32]>,
     ) -> Result<Lobes, MapError> {
         let key = |i: usize| (first[i].to_bits(), second[i].to_bits());
-        let mut keys: Vec<(u32, u32)> = (0..first.len()).map(key).collect();
-        keys.sort_unstable();
-        keys.dedup();
-        let codes = |(a, b): (u32, u32)| [a, b].map(|k| f64::from(f32::from_bits(k)));
-        let (rows, between) = if keys.len() <= PAIRS {
-            let rows: Result<Vec<Row>, ParamError> =
-                keys.par_iter().map(|k| self.convert(codes(*k))).collect();
-            (rows?, 0.0)
-        } else {
-            let grid = Grid::new(self, [SIDE; 2])?;
-            (keys.iter().map(|k| grid.read(codes(*k))).collect(), grid.between)
-        };
-        let mut out = Lobes { roughness: Vec::new(), stretch: None, costs: Vec::new(), between };
+        let table = self.table((0..first.len()).map(key), PAIRS, [SIDE; 2])?;
+        let mut out =
+            Lobes { roughness: Vec::new(), stretch: None, costs: Vec::new(), between: table.between };
         let mut stretch = Vec::with_capacity(first.len());
         for i in 0..first.len() {
-            let row = keys.binary_search(&key(i)).map_or([0.0; 5], |k| rows[k]);
             let turn = angle.map_or(0.0, |a| f64::from(a[i]) * PI);
-            let (roughness, wide, cost) = placed(&row, turn);
+            let (roughness, wide, cost) = placed(&table.row(key(i)), turn);
             out.roughness.push(roughness);
             stretch.push(wide);
             out.costs.push(cost);
         }
         out.stretch = Some(stretch);
         Ok(out)
+    }
+}
+
+/// Two codes by their bits; one number is there twice.
+type Key = (u32, u32);
+
+/// What the pairs of a map become.
+struct Table {
+    keys: Vec<Key>,
+    rows: Vec<Row>,
+    between: f64,
+}
+
+impl Table {
+    fn row(&self, key: Key) -> Row {
+        self.keys.binary_search(&key).map_or([0.0; 5], |i| self.rows[i])
     }
 }
 
