@@ -104,12 +104,13 @@ impl Search<'_> {
     /// Other axes, choices or models than the file names.
     fn labels(&self) -> Option<(Kind, String)> {
         let spec = &self.stored.bound.spec;
+        let told = spec.request();
         let axes = spec.grid.axes();
         for (i, axis) in axes.iter().enumerate() {
             for (other, words) in other_axes(axis) {
                 let changed =
                     axes.iter().enumerate().map(|(j, a)| if i == j { other.clone() } else { a.clone() });
-                let request = Request { axes: Some(changed.collect()), ..self.stored.bound.spec.request() };
+                let request = Request { axes: Some(changed.collect()), ..told.clone() };
                 if self.is(&request) {
                     return Some((
                         Kind::Mislabelled,
@@ -120,7 +121,7 @@ impl Search<'_> {
         }
         for (key, words) in self.choices() {
             for word in words {
-                let mut request = self.stored.bound.spec.request();
+                let mut request = told.clone();
                 request.params.insert(key.to_owned(), word.into());
                 if self.is(&request) {
                     return Some((Kind::Mislabelled, format!("the numbers are those of {key} = {word}")));
@@ -130,19 +131,9 @@ impl Search<'_> {
         let named = spec.model.as_ref().map(|(info, _)| info.id)?;
         for info in MODELS.iter().filter(|m| m.id != named) {
             let own = |key: &String| spec.kind.params.iter().any(|p| p.id == key.as_str());
-            let params = self
-                .stored
-                .bound
-                .spec
-                .request()
-                .params
-                .into_iter()
-                .filter(|(k, _)| own(k) || info.params.iter().any(|p| p.is_called(k)));
-            let request = Request {
-                model: Some(info.id.to_owned()),
-                params: params.collect(),
-                ..self.stored.bound.spec.request()
-            };
+            let taken = |key: &String| own(key) || info.params.iter().any(|p| p.is_called(key));
+            let mut request = Request { model: Some(info.id.to_owned()), ..told.clone() };
+            request.params.retain(|key, _| taken(key));
             if self.is(&request) {
                 return Some((
                     Kind::Mislabelled,
