@@ -55,7 +55,7 @@ struct Counts {
 fn fuzz(reader: &Reader, seed: u64, mut more: impl FnMut(usize) -> bool) -> (Counts, Vec<PathBuf>) {
     let seeds = (reader.seeds)();
     assert!(!seeds.is_empty(), "{} has no seeds", reader.id);
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let mut failed = Vec::new();
     let mut count = Counts::default();
     while more(count.all) && failed.len() < SHOWN {

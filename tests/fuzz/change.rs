@@ -1,20 +1,18 @@
 //! Seeded changes of a file.
 
-/// SplitMix64: the same inputs on every machine.
-pub(super) struct Random(pub(super) u64);
+use brdfbake::verify::seeds::Seeds;
+
+/// The same inputs on every machine.
+pub(super) struct Random(Seeds);
 
 impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+    pub(super) fn new(seed: u64) -> Random {
+        Random(Seeds::new(seed))
     }
 
     /// Below n; 0 for n = 0.
     fn below(&mut self, n: usize) -> usize {
-        usize::try_from(self.next() % n.max(1) as u64).unwrap()
+        self.0.index(n.max(1))
     }
 }
 

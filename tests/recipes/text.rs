@@ -10,6 +10,7 @@ use brdfbake::recipe::{ENGINES, PRESETS, parse, text};
 use brdfbake::tables::driver::OnMiss;
 use brdfbake::tables::spec::Request;
 use brdfbake::tables::{Mix, ModelUse, TABLES};
+use brdfbake::verify::seeds::Seeds;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -37,22 +38,15 @@ fn presets_and_engines_read_back() {
     }
 }
 
-/// SplitMix64: the same plans on every machine.
-struct Random(u64);
+/// The same plans on every machine.
+struct Random(Seeds);
 
 impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
     fn below(&mut self, n: usize) -> usize {
-        usize::try_from(self.next() % n as u64).unwrap()
+        self.0.index(n)
     }
     fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+        self.0.unit()
     }
     fn one_in(&mut self, n: usize) -> bool {
         self.below(n) == 0
@@ -184,7 +178,7 @@ fn table(random: &mut Random, name: &str) -> TableRequest {
 
 /// Kinds and keys of so many plans of a seed, each of which was read back.
 fn read_back(seed: u64, count: usize) -> (BTreeSet<&'static str>, BTreeSet<String>) {
-    let mut random = Random(seed);
+    let mut random = Random(Seeds::new(seed));
     let (mut plans, mut tries) = (0, 0);
     let (mut kinds, mut keys) = (BTreeSet::new(), BTreeSet::new());
     while plans < count {
