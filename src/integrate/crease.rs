@@ -10,7 +10,7 @@
 //! ```
 //! and the last line gives the small one of `h +- g` without cancellation.
 
-use super::graded::{Graded, Order};
+use super::graded::{Graded, Order, shared};
 
 /// A value of `wo . wm` at which an integrand has a square root of the distance, or one blurred over a width.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -132,7 +132,9 @@ fn piece(
     if first > 0.0 {
         visit(&Graded::root_at([unit(lo), unit(a)], root_scale(lo_blur, first), ROOT, level));
     }
-    if b - a > 1e-12 * whole {
+    if a <= 0.0 && b >= length {
+        visit(&shared(eps / length, order, level).rule);
+    } else if b - a > 1e-12 * whole {
         visit(&Graded::between(eps / length, order, level, [unit(a), unit(b)]));
     }
     if last > 0.0 {

@@ -22,7 +22,7 @@
 //! miss it.
 
 use super::crease::{self, Crease};
-use super::graded::{Graded, Order, share_scales};
+use super::graded::{Graded, Order, share_scales, shared};
 use super::half_vector::{Row, fill, half_tangent};
 use super::nodes::Nodes;
 use super::stop::Trust;
@@ -243,7 +243,7 @@ impl Ellipse {
         let [ax, ay] = self.lobe.alpha;
         let (s, mu) = (nodes.sin_o, nodes.mu_o);
         let length = panel.length.abs();
-        let azimuth = Graded::new(panel.scale / length, AZIMUTH, self.level);
+        let azimuth = &shared(panel.scale / length, AZIMUTH, self.level).rule;
         for j in 0..azimuth.node.len() {
             let step = panel.length * azimuth.node[j];
             let (sin, cos) = libm::sincos(self.psi_1 + panel.from + step);

@@ -6,6 +6,8 @@
 use super::gauss;
 use super::nodes::BATCH;
 use crate::math::exp::exp;
+use std::f64::consts::FRAC_PI_2;
+use std::sync::OnceLock;
 
 /// Order of a panel at `level`: `level (c0 + c1 L)` rounded, at least 2.
 ///
@@ -52,6 +54,67 @@ pub struct Part<'a> {
     pub weight: &'a [f64],
 }
 
+/// Scales of shared rules are powers of the eighth root of 2: the exponents of the finest and of the coarsest one, beyond which a rule
+/// is Gauss's own to the last bit but one.
+const EIGHTHS: [i32; 2] = [-480, 88];
+/// Orders of shared rules.
+const SHARED_ORDERS: usize = 1024;
+/// Scales of shared rules.
+const SCALES: usize = (EIGHTHS[1] - EIGHTHS[0] + 1).unsigned_abs() as usize;
+
+/// A rule that is made once a process; see [`shared`].
+#[derive(Debug)]
+pub struct Shared {
+    /// Nodes and weights.
+    pub rule: Graded,
+    /// sin(pi/2 x) at each node x.
+    pub quarter_sine: Vec<f64>,
+}
+
+impl Shared {
+    fn new(eps: f64, order: usize) -> Shared {
+        let mut rule = Graded::default();
+        rule.fill(eps, order, [0.0, 1.0]);
+        let quarter_sine = rule.node.iter().map(|x| libm::sin(FRAC_PI_2 * x)).collect();
+        Shared { rule, quarter_sine }
+    }
+}
+
+/// The eighth of an octave at or below a scale: never coarser than what was asked for.
+fn eighth(eps: f64) -> i32 {
+    /// Powers of the eighth root of 2.
+    const ROOTS: [f64; 7] = [
+        1.090_507_732_665_257_659_2,
+        1.189_207_115_002_721_066_7,
+        1.296_839_554_651_009_666_0,
+        std::f64::consts::SQRT_2,
+        1.542_210_825_407_940_823_6,
+        1.681_792_830_507_429_086_1,
+        1.834_008_086_409_342_463_5,
+    ];
+    let bits = eps.to_bits();
+    #[allow(clippy::cast_possible_truncation, reason = "eleven bits")]
+    let octave = (bits >> 52) as i32 - 1023;
+    let mantissa = f64::from_bits((bits & ((1 << 52) - 1)) | 1.0f64.to_bits());
+    let above: i32 = ROOTS.iter().map(|root| i32::from(mantissa >= *root)).sum();
+    (8 * octave + above).clamp(EIGHTHS[0], EIGHTHS[1])
+}
+
+/// The rule of a panel of length 1 for a scale of at most `eps > 0`, and less than a tenth below it; made once a process.
+///
+/// Charts ask for rules at every view: with scales on a ladder the same few serve all of them.
+#[must_use]
+pub fn shared(eps: f64, order: Order, level: f64) -> &'static Shared {
+    type OfScale = Box<[OnceLock<Shared>]>;
+    static RULES: [OnceLock<OfScale>; SCALES] = [const { OnceLock::new() }; SCALES];
+    let eighth = eighth(eps);
+    let eps = libm::exp2(0.125 * f64::from(eighth));
+    let count = order.at(level, libm::asinh(1.0 / eps)).min(SHARED_ORDERS);
+    let of_scale = RULES[(eighth - EIGHTHS[0]).unsigned_abs() as usize]
+        .get_or_init(|| (0..SHARED_ORDERS).map(|_| OnceLock::new()).collect());
+    of_scale[count - 1].get_or_init(|| Shared::new(eps, count))
+}
+
 impl Graded {
     /// The rule of a panel of length 1 for the scale `eps > 0`.
     #[must_use]
@@ -82,16 +145,21 @@ impl Graded {
     }
 
     /// As [`Graded::between`], in place.
-    fn set_between(&mut self, eps: f64, order: Order, level: f64, [lo, hi]: [f64; 2]) {
+    fn set_between(&mut self, eps: f64, order: Order, level: f64, span: [f64; 2]) {
+        let (_, l) = stretch(eps, span);
+        self.fill(eps, order.at(level, l), span);
+    }
+
+    /// The rule of so many points.
+    fn fill(&mut self, eps: f64, order: usize, span: [f64; 2]) {
         let ratio = 1.0 / eps.max(1e-300);
-        let start = if lo > 0.0 { libm::asinh(ratio * lo) } else { 0.0 };
-        let l = libm::asinh(ratio * hi) - start;
+        let (start, l) = stretch(eps, span);
         let scale = 1.0 / ratio;
         self.node.clear();
         self.weight.clear();
         // sinh y = (e^y - e^-y) / 2 would cancel near 0
         let small = start + l < 1.0;
-        for (x, w) in points(order.at(level, l)) {
+        for (x, w) in points(order) {
             let y = start + l * x;
             let (node, weight) = if small {
                 let (sinh, cosh) = near_zero(y);
@@ -128,6 +196,13 @@ impl Graded {
             points(order.at(level, 0.0)).map(|(x, w)| (x * x, 2.0 * x * w)).unzip();
         Graded { node, weight }
     }
+}
+
+/// Where a span begins in the stretched variable, and its length there.
+fn stretch(eps: f64, [lo, hi]: [f64; 2]) -> (f64, f64) {
+    let ratio = 1.0 / eps.max(1e-300);
+    let start = if lo > 0.0 { libm::asinh(ratio * lo) } else { 0.0 };
+    (start, libm::asinh(ratio * hi) - start)
 }
 
 /// sinh and cosh for |y| <= 1 by their series to y^17 (remainder below 1e-17).

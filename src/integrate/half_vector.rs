@@ -11,7 +11,7 @@
 //! so the horizon is exactly `t = t_max`, and `mu_i` near it has no cancellation when `d = t_max - t` is the variable.
 //! Everything is algebraic in half-angle tangents: no transcendental function is called per node.
 //!
-//! Panels, each graded by [`Graded`]:
+//! Panels, each graded by a [`shared`] rule:
 //! * azimuth: (0, pi/2) and (pi/2, pi), graded towards pi/2 on the scale `mu / s`, where R changes;
 //! * below `t_max / 2`: graded towards t = 0 on the scale `alpha` of the peak of D and its tail, and in front on that of a Fresnel
 //!   factor that changes over a width in v: there `v = mu + s t`;
@@ -22,7 +22,7 @@
 //! alpha are tiny).
 
 use super::ellipse::GRAZING;
-use super::graded::{Graded, Order, Part};
+use super::graded::{Order, Part, Shared, shared};
 use super::nodes::{BATCH, Nodes};
 use std::cell::Cell;
 use std::f64::consts::FRAC_PI_2;
@@ -73,80 +73,110 @@ impl Row {
     }
 }
 
-/// The arrays of one call.
-struct Workspace {
-    /// Nodes near the peak, and nodes towards the horizon: rows are gathered until a batch is full.
-    near: Nodes,
-    far: Nodes,
-    azimuth: Graded,
-    peak: Graded,
-    horizon: Graded,
+/// The rules of one side of the azimuth: rows, nodes of a row near the peak, and nodes of a row towards the horizon.
+#[derive(Debug, Clone, Copy)]
+pub struct Side {
+    /// True for the side of `wo`.
+    pub front: bool,
+    /// Over the azimuth.
+    pub azimuth: &'static Shared,
+    /// Below `t_max / 2`.
+    pub peak: &'static Shared,
+    /// Above it.
+    pub horizon: &'static Shared,
 }
 
-impl Default for Workspace {
-    fn default() -> Workspace {
-        let empty = Graded::default;
-        Workspace {
-            near: Nodes::new(1.0.into()),
-            far: Nodes::new(1.0.into()),
-            azimuth: empty(),
-            peak: empty(),
-            horizon: empty(),
+/// Scales of the gradings of a view and a lobe: one for the azimuth, two (front and back) for the others.
+#[derive(Debug, Clone, Copy)]
+pub struct Scales {
+    azimuth: f64,
+    peak: [f64; 2],
+    horizon: [f64; 2],
+}
+
+impl Scales {
+    /// For one view cosine; see [`visit`].
+    #[must_use]
+    pub fn new(mu: f64, [alpha, slope, layer]: [f64; 3], reach: f64) -> Scales {
+        let alpha = alpha.clamp(ALPHA_RANGE[0], ALPHA_RANGE[1]);
+        let end = half_tangent(reach * alpha);
+        let s = ((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt();
+        // Gradings are shared by the rows of a side; the row at phi = 0 (or pi/2) is the most demanding one.
+        let hardest = [1.0, 0.0].map(|cos_phi| Row::relative(cos_phi, s, mu.max(1e-12)));
+        let rise = [(mu + slope) / s.max(1e-9), f64::INFINITY];
+        let near = |i: usize| 0.5 * alpha.min(rise[i]) / hardest[i].quarter.min(end);
+        let far = |i: usize| {
+            let row: &Row = &hardest[i];
+            let scale = (mu.min(layer.max(ALPHA_RANGE[0])) / (2.0 * row.r)).clamp(1e-9 * alpha.min(1.0), 1.0);
+            0.5 * scale / row.quarter
+        };
+        Scales {
+            azimuth: (mu / (s.max(1e-9) * FRAC_PI_2)).clamp(1e-9, 1e3),
+            peak: [near(0), near(1)],
+            horizon: [far(0), far(1)],
         }
+    }
+
+    /// Scales that serve both.
+    #[must_use]
+    pub fn and(self, other: Scales) -> Scales {
+        let least = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].min(b[1])];
+        Scales {
+            azimuth: self.azimuth.min(other.azimuth),
+            peak: least(self.peak, other.peak),
+            horizon: least(self.horizon, other.horizon),
+        }
+    }
+
+    /// The rules of both sides at a level.
+    #[must_use]
+    pub fn sides(&self, level: f64) -> [Side; 2] {
+        [(true, AZIMUTH_FRONT, 0), (false, AZIMUTH_BACK, 1)].map(|(front, order, i)| Side {
+            front,
+            azimuth: shared(self.azimuth, order, level),
+            peak: shared(self.peak[i], PEAK, level),
+            horizon: shared(self.horizon[i], HORIZON, level),
+        })
     }
 }
 
 thread_local! {
-    /// The workspace of the last call on this thread; a nested call finds none and makes its own.
-    static SPARE: Cell<Option<Box<Workspace>>> = const { Cell::new(None) };
+    /// The batches of the last call on this thread (near the peak, towards the horizon: rows are gathered until one is full); a nested
+    /// call finds none and makes its own. Clearing them would cost as much as a coarse level.
+    static SPARE: Cell<Option<Box<[Nodes; 2]>>> = const { Cell::new(None) };
 }
 
 /// Calls `visit` with batches of nodes that cover the hemisphere for one view cosine.
 ///
 /// `slope`: the width in v over which F changes at grazing incidence. `layer`: that in `mu_i` over which masking changes. `reach`: D vanishes beyond `tan(t) = reach * alpha` (6.5 for Beckmann, infinite for GGX); no node is spent there.
-pub fn visit(
-    mu_o: f64,
-    [alpha, slope, layer]: [f64; 3],
-    reach: f64,
-    level: f64,
-    visit: &mut dyn FnMut(&Nodes),
-) {
-    let alpha = alpha.clamp(ALPHA_RANGE[0], ALPHA_RANGE[1]);
-    let end = half_tangent(reach * alpha);
-    // the arrays are kept from call to call: clearing them would cost as much as a coarse level
-    let mut space = SPARE.take().unwrap_or_default();
-    let Workspace { near, far, azimuth, peak, horizon } = &mut *space;
+pub fn visit(mu_o: f64, lobe: [f64; 3], reach: f64, level: f64, visit: &mut dyn FnMut(&Nodes)) {
+    let end = half_tangent(reach * lobe[0].clamp(ALPHA_RANGE[0], ALPHA_RANGE[1]));
+    let mut space =
+        SPARE.take().unwrap_or_else(|| Box::new([Nodes::new(1.0.into()), Nodes::new(1.0.into())]));
+    let [near, far] = &mut *space;
     near.reset(mu_o.into());
     far.reset(mu_o.into());
     let (s, mu) = (near.sin_o, mu_o);
-    let azimuth_scale = (mu / (s.max(1e-9) * FRAC_PI_2)).clamp(1e-9, 1e3);
-    for (front, order) in [(true, AZIMUTH_FRONT), (false, AZIMUTH_BACK)] {
+    for side in Scales::new(mu, lobe, reach).sides(level) {
+        let front = side.front;
         // at mu = 0 the far half of the azimuth sees no light: t_max is 0 there
         if !front && mu < GRAZING {
             continue;
         }
-        azimuth.set(azimuth_scale, order, level);
-        // Gradings are shared by the rows of a side; the row at phi = 0 (or pi/2) is the most demanding one.
-        let hardest = Row::relative(if front { 1.0 } else { 0.0 }, s, mu.max(1e-12));
-        let rise = if front { (mu + slope) / s.max(1e-9) } else { f64::INFINITY };
-        peak.set(0.5 * alpha.min(rise) / hardest.quarter.min(end), PEAK, level);
-        let scale = (mu.min(layer.max(ALPHA_RANGE[0])) / (2.0 * hardest.r)).clamp(1e-9 * alpha.min(1.0), 1.0);
-        horizon.set(0.5 * scale / hardest.quarter, HORIZON, level);
         near.panel = if front { 0 } else { 2 };
         far.panel = near.panel + 1;
-        for j in 0..azimuth.node.len() {
-            let sine = libm::sin(FRAC_PI_2 * azimuth.node[j]);
+        for (&sine, &weight) in side.azimuth.quarter_sine.iter().zip(&side.azimuth.rule.weight) {
             let row = Row::relative(if front { sine } else { -sine }, s, mu);
             // 2 for the mirror half of the azimuth.
-            let width = 2.0 * FRAC_PI_2 * azimuth.weight[j];
-            for part in peak.parts() {
+            let width = 2.0 * FRAC_PI_2 * weight;
+            for part in side.peak.rule.parts() {
                 flush(near, part.node.len(), visit);
                 fill_peak(near, &row, part, width, row.quarter.min(end));
             }
             // distance from the horizon at which D ends; beyond the half way point nothing is left
             let near_end = row.above_horizon(end);
             if near_end < row.quarter {
-                for part in horizon.parts() {
+                for part in side.horizon.rule.parts() {
                     flush(far, part.node.len(), visit);
                     fill_horizon(far, &row, part, width, [near_end, row.quarter]);
                 }

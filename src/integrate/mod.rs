@@ -13,6 +13,7 @@ pub mod density;
 pub mod ellipse;
 pub mod facet;
 pub mod fibre;
+pub mod four;
 pub mod gauss;
 pub mod graded;
 pub mod half_vector;

@@ -31,7 +31,7 @@
 //! algebraically beyond the critical angle: 2e-9 at level 15.
 
 use super::ellipse::{GRAZING, square, turned};
-use super::graded::{Graded, Order, share_scales};
+use super::graded::{Graded, Order, share_scales, shared};
 use super::stop::Trust;
 use super::view::View;
 use glam::DVec3;
@@ -306,9 +306,13 @@ impl Refraction<'_> {
 
     fn panel(&mut self, panel: Panel, fan: bool, weight: f64, index: usize) {
         let length = panel.length.abs();
+        let root;
         let azimuth = match panel.scale {
-            Some(scale) => Graded::new(scale / length, AZIMUTH, self.level),
-            None => Graded::root_at([0.0, 1.0], 1e3, ROOT, self.level),
+            Some(scale) => &shared(scale / length, AZIMUTH, self.level).rule,
+            None => {
+                root = Graded::root_at([0.0, 1.0], 1e3, ROOT, self.level);
+                &root
+            }
         };
         for (x, w) in azimuth.node.iter().zip(&azimuth.weight) {
             let row = if fan {

@@ -1,7 +1,7 @@
 //! The rows of the chart of refraction: facets of one azimuth, from the rarer side in t and from the denser one in x; see
 //! [`refracted`](super::refracted).
 
-use super::graded::{Graded, Order};
+use super::graded::{Order, shared};
 use super::half_vector::half_tangent;
 use super::refracted::{Facet, Refraction, Row};
 use glam::DVec3;
@@ -47,12 +47,12 @@ impl Refraction<'_> {
         // whether a row is split changes from row to row: both parts are one panel
         let split = 0.5 * last < SMOOTH * end && !self.lobe.reach.is_finite();
         let middle = if split { end / (1.0 + (1.0 + end * end).sqrt()) } else { end };
-        let peak = Graded::new(0.5 * row.width.min(rise) / middle, ABOVE, self.level);
+        let peak = &shared(0.5 * row.width.min(rise) / middle, ABOVE, self.level).rule;
         for (x, w) in peak.node.iter().zip(&peak.weight) {
             self.upper(row, middle * x, middle * w);
         }
         if split {
-            let layer = Graded::new((0.5 * last / middle).max(1e-9), LAYER, self.level);
+            let layer = &shared((0.5 * last / middle).max(1e-9), LAYER, self.level).rule;
             for (x, w) in layer.node.iter().zip(&layer.weight) {
                 let from_end = middle * x;
                 let below = 1.0 / (1.0 + end * from_end);
@@ -107,12 +107,12 @@ impl Refraction<'_> {
         let split = last < 0.5 * SMOOTH * end && !self.lobe.reach.is_finite();
         let middle = if split { 0.5 * end } else { end };
         let line = Line { from, c_0: c };
-        let rule = Graded::new(start / middle, BELOW, self.level);
+        let rule = &shared(start / middle, BELOW, self.level).rule;
         for (x, w) in rule.node.iter().zip(&rule.weight) {
             self.lower(row, &line, middle * x, middle * w);
         }
         if split {
-            let rule = Graded::new((last / middle).max(1e-9), LAYER, self.level);
+            let rule = &shared((last / middle).max(1e-9), LAYER, self.level).rule;
             for (x, w) in rule.node.iter().zip(&rule.weight) {
                 self.lower(row, &line, end - middle * x, middle * w);
             }

@@ -157,10 +157,15 @@ impl Level {
                 magnitude[c] += f[c].abs();
             }
         }
-        let shared = SHARED * difference[..channels].iter().sum::<f64>();
-        difference[..channels].iter_mut().for_each(|d| *d += shared);
+        share(&mut difference[..channels]);
         (difference, magnitude)
     }
+}
+
+/// Adds to the difference of each channel its share of all of them.
+pub(super) fn share(difference: &mut [f64]) {
+    let shared = SHARED * difference.iter().sum::<f64>();
+    difference.iter_mut().for_each(|d| *d += shared);
 }
 
 /// Climbs through `levels` (numbers of steps, passed to `at`) until every channel is within the tolerance, absolute; three levels at least.

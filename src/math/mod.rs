@@ -5,6 +5,7 @@ pub mod double;
 pub mod exp;
 pub mod figures;
 pub mod frame;
+pub mod lanes;
 pub mod least_squares;
 pub mod nearest;
 pub mod rational;

@@ -2,8 +2,10 @@
 //!
 //! `I_j = int f(wo, wi) g_j(wo . wh) mu_i dwi`, all channels over the same nodes in one pass.
 
+use super::microfacet::four;
 use super::{Brdf, Functional};
 use crate::integrate::{BATCH, Estimate, MAX_CHANNELS, Nodes, Sums, View, adaptive, ladder};
+use crate::math::lanes::LANES;
 
 /// Which rules may be taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,14 +40,14 @@ struct Batch {
 }
 
 /// Independent partial sums, so that additions need not wait for each other. The order is fixed.
-const LANES: usize = 4;
+const SUMS: usize = 4;
 
 impl Batch {
     /// `values` are f; the contributions are f times weight times `mu_i`.
     fn new(values: &[f64; BATCH], nodes: &Nodes) -> Batch {
         let n = nodes.len;
-        let (mut one, mut schlick) = ([0.0; LANES], [0.0; LANES]);
-        let whole = n - n % LANES;
+        let (mut one, mut schlick) = ([0.0; SUMS], [0.0; SUMS]);
+        let whole = n - n % SUMS;
         let mut add = |lane: usize, i: usize| {
             let f = values[i] * (nodes.weight[i] * nodes.mu_i[i]);
             let m = 1.0 - nodes.cos_d[i];
@@ -53,8 +55,8 @@ impl Batch {
             one[lane] += f;
             schlick[lane] += f * (m2 * m2 * m);
         };
-        for i in (0..whole).step_by(LANES) {
-            for lane in 0..LANES {
+        for i in (0..whole).step_by(SUMS) {
+            for lane in 0..SUMS {
                 add(lane, i + lane);
             }
         }
@@ -103,6 +105,24 @@ pub fn integrate(
         .then(reduced)
         .flatten()
         .unwrap_or_else(|| by_nodes(model, view, functionals, tolerance))
+}
+
+/// [`integrate`] of four models at four views at a time, if the kernel serves them and these functionals.
+///
+/// The four climb together, so that a value depends on its neighbours within the tolerance: whoever calls groups them by their numbers in
+/// a table, never by what a thread happens to hold.
+#[must_use]
+pub fn integrate_four(
+    models: [&dyn Brdf; LANES],
+    mu: [f64; LANES],
+    functionals: &[Functional],
+    tolerance: f64,
+) -> Option<[Estimate; LANES]> {
+    let mut facets = [models[0].four()?; LANES];
+    for (f, model) in facets.iter_mut().zip(models) {
+        *f = model.four()?;
+    }
+    four::integrate(facets, mu, functionals, tolerance)
 }
 
 /// E(mu) by [`integrate`], in the plane of the tangent.

@@ -190,6 +190,11 @@ pub trait Brdf: Debug + Send + Sync {
         None
     }
 
+    /// What the kernel of four views at a time needs, if it serves this model; see [`integral::integrate_four`].
+    fn four(&self) -> Option<microfacet::four::Facets> {
+        None
+    }
+
     /// What an albedo at a view cosine may be off by because the model itself holds curves that were integrated, absolute.
     fn own_error(&self, _mu_o: f64) -> f64 {
         0.0

@@ -8,6 +8,7 @@ use crate::grid::{Grid, Table};
 use crate::integrate::{MAX_CHANNELS, Sums};
 use crate::plan::PlannedTable;
 use crate::tables::Bound;
+use crate::tables::driver::at_points;
 use crate::verify::reconstruction::in_practical_domain;
 use rayon::prelude::*;
 
@@ -117,16 +118,15 @@ pub(super) fn fit(
     })?;
     let places = places(grid, per_cell);
     let steps = Steps::new(places.len(), tell);
-    let truth = |(x, area): &([f64; crate::grid::layout::MAX_AXES], f64)| {
-        if cancel.is_set() {
-            return None;
-        }
-        let point = grid.at_coordinates(x);
-        let value = bound.baker.texel(point.values(), tolerance).ok()?.value;
-        steps.one();
-        Some((point, *area, value))
-    };
-    let truth: Vec<(Point, f64, Sums)> = places.par_iter().filter_map(truth).collect();
+    let points: Vec<Point> = places.iter().map(|(x, _)| grid.at_coordinates(x)).collect();
+    let done = |count: usize| (0..count).for_each(|_| steps.one());
+    let values = at_points(bound, &points, tolerance, cancel, &done);
+    let truth: Vec<(Point, f64, Sums)> = points
+        .into_iter()
+        .zip(&places)
+        .zip(values)
+        .filter_map(|((point, (_, area)), e)| Some((point, *area, e?.value)))
+        .collect();
     cancel.check()?;
     let samples = Samples::new(grid, truth.iter().map(|(p, area, _)| (p, *area)));
     let n = table.channels.len();

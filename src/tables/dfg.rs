@@ -16,8 +16,9 @@ use super::{
 };
 use crate::cite;
 use crate::grid::{Axis, Warp};
-use crate::integrate::{Estimate, MAX_CHANNELS, Sums};
-use crate::models;
+use crate::integrate::{Estimate, Sums};
+use crate::math::lanes::LANES;
+use crate::models::{self, Brdf};
 use crate::terms::schlick;
 
 const UNIT: [f64; 2] = [0.0, 1.0];
@@ -225,11 +226,8 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         }
     }
     let sweep = Sweep::new(spec, true)?;
-    let own = || {
-        let (info, params) = spec.model.as_ref()?;
-        params.number(info.measured("alpha")?.id).ok()
-    };
-    let alpha = match (spec.axis("alpha"), own()) {
+    let own = spec.model.as_ref().and_then(|(info, params)| params.number(info.measured("alpha")?.id).ok());
+    let alpha = match (spec.axis("alpha"), own) {
         (Some(axis), _) => Ok(axis),
         (None, Some(alpha)) => Err(alpha),
         (None, None) => Ok(spec.coordinate("alpha")?),
@@ -240,8 +238,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         let model = sweep.info().id.to_owned();
         return Err(BindError::Model { kind: spec.kind.id, model, why });
     }
-    let channels = spec.layout.ids().collect();
-    Ok(Box::new(Dfg { sweep, channels, parts, functionals, alpha }))
+    Ok(Box::new(Dfg { sweep, channels: spec.layout.ids().collect(), parts, functionals, alpha }))
 }
 
 impl Part {
@@ -280,37 +277,52 @@ impl Dfg {
         let third = self.channels.get(2).copied();
         DECODED.iter().copied().find(|d| d.len() == more.len() + 2 && d.get(2).map(|c| c.id) == third)
     }
-}
 
-impl Baker for Dfg {
-    fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
-        let view = self.sweep.view(at);
-        let mut all = Estimate { value: [0.0; MAX_CHANNELS], error: [0.0; MAX_CHANNELS], evaluations: 0 };
-        let mut split = all;
-        if !self.functionals.is_empty() {
-            // the rest adds two errors
-            let twice = self.parts.iter().any(|p| matches!(p, Part::Rest));
-            let share = if twice { 0.5 * tolerance } else { tolerance };
-            let model = self.sweep.model(at)?;
-            split = integrate(&*model, view, &self.functionals, share)?;
-            // no white albedo is above 1: such an estimate is one of the few that are too small
-            let passive = self.sweep.info().laws.passive;
-            for _ in 0..3 {
-                if !passive || self.above_one(&split) <= 0.0 {
-                    break;
-                }
-                let finer = 0.1 * split.largest_error().min(share);
-                let again = integrate(&*model, view, &self.functionals, finer)?;
-                split =
-                    Estimate { evaluations: split.evaluations.saturating_add(again.evaluations), ..again };
-            }
-            if passive {
-                // what is still above is off by that at least
-                let excess = self.above_one(&split).min(share);
-                split.error.iter_mut().for_each(|e| *e += excess);
-            }
-            all.evaluations = split.evaluations;
+    /// The tolerance of the integrals: the rest adds two errors.
+    fn share(&self, tolerance: f64) -> f64 {
+        if self.parts.iter().any(|p| matches!(p, Part::Rest)) { 0.5 * tolerance } else { tolerance }
+    }
+
+    /// Four texels at once, if the kernel serves them.
+    fn four(&self, at: &[&[f64]], tolerance: f64) -> Option<Vec<Result<Estimate, TexelError>>> {
+        let four = self.sweep.four(at, &self.functionals, self.share(tolerance))?;
+        let each = at.iter().zip(four).map(|(at, (model, split))| {
+            let split = self.passive(split?, &*model, at, tolerance)?;
+            self.channels_of(&split, at, tolerance)
+        });
+        Some(each.collect())
+    }
+
+    /// No white albedo is above 1: an estimate that says so is one of the few that are too small.
+    fn passive(
+        &self,
+        mut split: Estimate,
+        model: &dyn Brdf,
+        at: &[f64],
+        tolerance: f64,
+    ) -> Result<Estimate, TexelError> {
+        if !self.sweep.info().laws.passive {
+            return Ok(split);
         }
+        let share = self.share(tolerance);
+        for _ in 0..3 {
+            if self.above_one(&split) <= 0.0 {
+                break;
+            }
+            let finer = 0.1 * split.largest_error().min(share);
+            let again = integrate(model, self.sweep.view(at), &self.functionals, finer)?;
+            split = Estimate { evaluations: split.evaluations.saturating_add(again.evaluations), ..again };
+        }
+        // what is still above is off by that at least
+        let excess = self.above_one(&split).min(share);
+        split.error.iter_mut().for_each(|e| *e += excess);
+        Ok(split)
+    }
+
+    /// The channels from the integrals of the model.
+    fn channels_of(&self, split: &Estimate, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
+        let view = self.sweep.view(at);
+        let mut all = Estimate { evaluations: split.evaluations, ..Estimate::ZERO };
         let of = |g: Functional| {
             let i = self.functionals.iter().position(|f| *f == g).unwrap_or(0);
             (split.value[i], split.error[i])
@@ -345,6 +357,26 @@ impl Baker for Dfg {
             };
         }
         Ok(all)
+    }
+}
+
+impl Baker for Dfg {
+    fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
+        let mut split = Estimate::ZERO;
+        if !self.functionals.is_empty() {
+            let model = self.sweep.model(at)?;
+            split = integrate(&*model, self.sweep.view(at), &self.functionals, self.share(tolerance))?;
+            split = self.passive(split, &*model, at, tolerance)?;
+        }
+        self.channels_of(&split, at, tolerance)
+    }
+
+    fn group(&self) -> usize {
+        if self.functionals.is_empty() { 1 } else { LANES }
+    }
+
+    fn texels(&self, at: &[&[f64]], tolerance: f64) -> Vec<Result<Estimate, TexelError>> {
+        self.four(at, tolerance).unwrap_or_else(|| at.iter().map(|at| self.texel(at, tolerance)).collect())
     }
 
     fn decoded(&self) -> Option<&'static [ChannelInfo]> {

@@ -1,11 +1,14 @@
 //! The one loop over texels: threads, progress and cancelling live here and nowhere else.
 //!
-//! Runs of texels are computed in parallel and collected in order; each texel depends only on its coordinates, so the bytes do
-//! not depend on the number of threads.
+//! Runs of texels are computed in parallel and collected in order; a texel depends only on the coordinates of its group
+//! ([`Baker::group`](super::Baker::group)), and groups are counted from the first texel of the table, so that the bytes do not depend on
+//! the number of threads.
 
 use super::{Bound, TexelError};
 use crate::cancel::{Cancel, Cancelled};
 use crate::grid::Table;
+use crate::grid::layout::Point;
+use crate::integrate::Estimate;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -110,7 +113,7 @@ pub fn bake(bound: &Bound, options: Options<'_>) -> Result<Table, BakeError> {
     let grid = &bound.spec.grid;
     let len = grid.len();
     // small enough that a one-row table keeps every thread busy, large enough that a task is worth its keeping
-    let width = (len / 32).clamp(1, CHUNK);
+    let width = (len / 32).clamp(1, CHUNK).next_multiple_of(bound.baker.group());
     let n = bound.spec.layout.channels.len();
     let mut table = Table {
         grid: grid.clone(),
@@ -143,22 +146,47 @@ pub fn bake(bound: &Bound, options: Options<'_>) -> Result<Table, BakeError> {
 fn bake_row(bound: &Bound, first: usize, row: Row<'_>, options: Options<'_>) -> Result<(), BakeError> {
     let n = bound.spec.layout.channels.len();
     let grid = &bound.spec.grid;
-    let slots = row.values.chunks_exact_mut(n).zip(row.errors.chunks_exact_mut(n)).zip(row.evaluations);
-    for (texel, ((values, errors), evaluations)) in (first..).zip(slots) {
+    let texels: Vec<_> = (first..first + row.evaluations.len()).map(|texel| grid.texel(texel)).collect();
+    let mut slots = row.values.chunks_exact_mut(n).zip(row.errors.chunks_exact_mut(n)).zip(row.evaluations);
+    let group = bound.baker.group();
+    for (part, start) in texels.chunks(group).zip((first..).step_by(group)) {
         options.cancel.check()?;
-        let e = bound.baker.texel(grid.texel(texel).values(), options.tolerance).map_err(|error| {
-            BakeError::Texel {
+        let at: Vec<&[f64]> = part.iter().map(|texel| texel.values()).collect();
+        let results = bound.baker.texels(&at, options.tolerance);
+        for (result, texel) in results.into_iter().zip(start..) {
+            let e = result.map_err(|error| BakeError::Texel {
                 texel,
                 place: super::place(grid, texel),
                 channels: bound.spec.layout.ids().map(str::to_owned).collect(),
                 error,
-            }
-        })?;
-        values.copy_from_slice(&e.value[..n]);
-        errors.copy_from_slice(&e.error[..n]);
-        *evaluations = e.evaluations;
+            })?;
+            let Some(((values, errors), evaluations)) = slots.next() else { break };
+            values.copy_from_slice(&e.value[..n]);
+            errors.copy_from_slice(&e.error[..n]);
+            *evaluations = e.evaluations;
+        }
     }
     Ok(())
+}
+
+/// The values at points that are no texels, in groups as texels are: none where an integral fails, and after a stop.
+pub fn at_points(
+    bound: &Bound,
+    points: &[Point],
+    tolerance: f64,
+    cancel: &Cancel,
+    done: &(dyn Fn(usize) + Sync),
+) -> Vec<Option<Estimate>> {
+    let group = |part: &[Point]| {
+        if cancel.is_set() {
+            return vec![None; part.len()];
+        }
+        let at: Vec<&[f64]> = part.iter().map(Point::values).collect();
+        let results = bound.baker.texels(&at, tolerance);
+        done(part.len());
+        results.into_iter().map(Result::ok).collect()
+    };
+    points.par_chunks(bound.baker.group()).flat_map_iter(group).collect()
 }
 
 /// Number of texels of which some channel's estimate is above the tolerance.

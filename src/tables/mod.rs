@@ -103,6 +103,16 @@ pub trait Baker: Send + Sync {
     /// [`TexelError`] when a value is not finite or a parameter at this point is out of range.
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError>;
 
+    /// How many texels that follow each other are computed together: 1, or a few where they share their work.
+    fn group(&self) -> usize {
+        1
+    }
+
+    /// The values of a group, or of what is left of one at the end of a table; see [`Baker::texel`].
+    fn texels(&self, at: &[&[f64]], tolerance: f64) -> Vec<Result<Estimate, TexelError>> {
+        at.iter().map(|at| self.texel(at, tolerance)).collect()
+    }
+
     /// True where one texel costs as much as all of them, so that no plan looks at a few.
     fn is_whole(&self) -> bool {
         false

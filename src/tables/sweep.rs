@@ -1,9 +1,14 @@
 //! From a point of the grid to a model: which axis is the view cosine, which ones are parameters.
 
 use super::role::Side;
-use super::{BindError, Spec, TexelError};
-use crate::integrate::View;
-use crate::models::{Brdf, ModelInfo, Params};
+use super::{BindError, Spec, TexelError, finite};
+use crate::integrate::{Estimate, View};
+use crate::math::lanes::LANES;
+use crate::models::integral::integrate_four;
+use crate::models::{Brdf, Functional, ModelInfo, Params};
+
+/// Models with their integrals.
+pub type Four = Vec<(Box<dyn Brdf>, Result<Estimate, TexelError>)>;
 
 /// A model whose parameters follow the axes of a grid.
 #[derive(Debug, Clone)]
@@ -98,6 +103,22 @@ impl Sweep {
     /// [`TexelError::Param`] where the model refuses the parameters.
     pub fn model(&self, at: &[f64]) -> Result<Box<dyn Brdf>, TexelError> {
         Ok((self.info.build)(&self.params(at)?)?)
+    }
+
+    /// The models at four points and their integrals, if the kernel of four views serves them; what is left of a group at the end of a
+    /// table is filled up with its last point.
+    #[must_use]
+    pub fn four(&self, at: &[&[f64]], functionals: &[Functional], tolerance: f64) -> Option<Four> {
+        let mut models = Vec::with_capacity(LANES);
+        let mut mu = [0.0; LANES];
+        for (i, mu) in mu.iter_mut().enumerate() {
+            let at = at.get(i).or(at.last())?;
+            models.push(self.model(at).ok()?);
+            *mu = self.mu(at);
+        }
+        let [a, b, c, d] = &models[..] else { return None };
+        let four = integrate_four([&**a, &**b, &**c, &**d], mu, functionals, tolerance)?;
+        Some(models.into_iter().zip(four.map(|e| finite(e, functionals.len()))).collect())
     }
 
     /// The model at a point from above or from inside, where its relative index is 1 / eta.

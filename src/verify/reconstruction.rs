@@ -11,7 +11,8 @@ use crate::grid::layout::{MAX_AXES, Point, combination};
 use crate::grid::provenance::{Reconstruction, Spread};
 use crate::grid::table::{Extreme, named};
 use crate::grid::{Grid, Texel, lookup};
-use crate::integrate::{MAX_CHANNELS, Sums};
+use crate::integrate::{Estimate, MAX_CHANNELS, Sums};
+use crate::tables::driver::at_points;
 use crate::tables::{Bound, ChannelInfo};
 use rayon::prelude::*;
 
@@ -128,15 +129,16 @@ impl<'a> Probe<'a> {
 
     fn integrate(&self, points: &[[f64; MAX_AXES]], tell: &Tell<'_>) -> Vec<Fresh> {
         let steps = Steps::new(points.len(), tell);
-        let fresh = |x: &[f64; MAX_AXES]| {
-            self.cancel.check().ok()?;
-            let point = self.bound.spec.grid.at_coordinates(x);
-            let mut value = self.bound.baker.texel(point.values(), self.tolerance).ok()?.value;
+        let grid = &self.bound.spec.grid;
+        let places: Vec<Point> = points.iter().map(|x| grid.at_coordinates(x)).collect();
+        let done = |count: usize| (0..count).for_each(|_| steps.one());
+        let values = at_points(self.bound, &places, self.tolerance, self.cancel, &done);
+        let fresh = |((x, point), e): ((&[f64; MAX_AXES], Point), Option<Estimate>)| {
+            let mut value = e?.value;
             self.bound.baker.decode(point.values(), &mut value);
-            steps.one();
             Some(Fresh { x: *x, point, value })
         };
-        points.par_iter().filter_map(fresh).collect()
+        points.iter().zip(places).zip(values).filter_map(fresh).collect()
     }
 
     fn compare_all<'f>(&self, reader: &Grid, stored: &[f64], points: &'f [Fresh]) -> Vec<Compared<'f>> {

@@ -1,6 +1,6 @@
 //! GGX: the kernel over batches of nodes, and the one-dimensional reduction of its white albedo.
 
-use super::{Distribution, Ggx, Masking, default_dv_nodes, reduction};
+use super::{Distribution, Ggx, Masking, default_dv_nodes, four, reduction};
 use crate::integrate::{BATCH, Estimate, Nodes};
 use std::f64::consts::PI;
 
@@ -42,6 +42,10 @@ impl Distribution for Ggx {
                 }
             }
         }
+    }
+
+    fn four(&self, masking: Masking, [f0, f90]: [f64; 2]) -> Option<four::Facets> {
+        Some(four::Facets { alpha: self.alpha()?, masking, f0, f90 })
     }
 
     fn reduced_albedo(&self, mu_o: f64, masking: Masking, tolerance: f64) -> Option<Estimate> {

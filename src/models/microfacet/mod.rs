@@ -4,6 +4,7 @@
 //! [`Fresnel`] factor; everything else is here.
 
 mod beckmann;
+pub mod four;
 mod fresnel;
 mod ggx;
 mod reduction;
@@ -60,6 +61,11 @@ pub trait Distribution: Ndf {
     /// Part of the facets that the chart leaves out at a view cosine, because they are steeper than its finest scale.
     fn left_out(&self, _mu_o: f64) -> f64 {
         0.0
+    }
+
+    /// What the kernel of four views needs, if it knows the distribution.
+    fn four(&self, _masking: Masking, _reflectances: [f64; 2]) -> Option<four::Facets> {
+        None
     }
 
     /// White directional albedo by a one-dimensional reduction, if there is one.
@@ -134,6 +140,13 @@ impl<D: Distribution> Brdf for Microfacet<D> {
     fn eval_nodes(&self, nodes: &Nodes, out: &mut [f64; BATCH]) {
         self.distribution.dv_nodes(nodes, self.masking, out);
         self.fresnel.scale_nodes(nodes, out);
+    }
+
+    fn four(&self) -> Option<four::Facets> {
+        match self.fresnel {
+            Fresnel::Schlick { f0, f90 } if !self.flat => self.distribution.four(self.masking, [f0, f90]),
+            _ => None,
+        }
     }
 
     fn mirror(&self, mu_o: f64) -> Option<f64> {

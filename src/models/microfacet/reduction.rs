@@ -15,8 +15,9 @@
 
 use super::Masking;
 use crate::integrate::Estimate;
-use crate::integrate::graded::{Graded, Order};
+use crate::integrate::graded::{Order, Shared, shared};
 use crate::integrate::stop::{Level, Trust, climb_sure};
+use crate::math::lanes::{Kernel, LANES, Lanes, wide};
 
 const ORDER: Order = Order(1.0, 0.4);
 
@@ -24,7 +25,7 @@ const ORDER: Order = Order(1.0, 0.4);
 const LIMIT: f64 = 1e-18;
 
 /// Trust in it.
-const TRUST: Trust = Trust { gain: &[3.0], memory: &[0.05] };
+const TRUST: Trust = Trust { gain: &[3.0], memory: &[0.2, 0.2, 0.05] };
 
 const LEVELS: [f64; 9] = [2.0, 2.8, 4.0, 5.6, 8.0, 11.2, 16.0, 22.4, 31.0];
 
@@ -44,6 +45,7 @@ pub(super) fn white_ggx(mu: f64, alpha: f64, masking: Masking, tolerance: f64) -
     Some(climb_sure(TRUST, first..LEVELS.len(), 1, tolerance, |j, level| integrand.sums(LEVELS[j], level)))
 }
 
+#[derive(Clone, Copy)]
 struct Integrand {
     mu: f64,
     s: f64,
@@ -70,41 +72,73 @@ impl Integrand {
             if length.abs() <= 0.0 {
                 continue;
             }
-            let rule = Graded::new((scale / length.abs()).min(1e3), ORDER, level);
-            out.count(rule.node.len());
-            let mut part = 0.0;
-            for (&x, &w) in rule.node.iter().zip(&rule.weight) {
-                // the distance to the peak is exact: it is the variable of the panel
-                let step = length * x;
-                let from_peak = if (from - mu).abs() <= 0.0 { step } else { from + step - mu };
-                part += w * self.at(from + step, from_peak);
-            }
+            let rule = shared((scale / length.abs()).min(1e3), ORDER, level);
+            out.count(rule.rule.node.len());
+            // the distance to the peak is exact: it is the variable of the panel
+            let to_peak = if (from - mu).abs() <= 0.0 { 0.0 } else { from - mu };
+            let part = wide(Panel { integrand: *self, rule, from, to_peak, length });
             out.panel(panel)[0] = length.abs() * part;
         }
     }
 
-    /// The integrand at `m`, `from_peak = m - mu`.
-    fn at(&self, m: f64, from_peak: f64) -> f64 {
+    /// The integrand at `m`, `from_peak = m - mu`, with one division: that of `R` as well as that of G2.
+    #[inline(always)]
+    fn at(&self, m: Lanes, from_peak: Lanes) -> Lanes {
         let (mu, s, a2) = (self.mu, self.s, self.a * self.a);
         let b = 1.0 - a2;
         // 1 - m by the exact distance to the peak: at normal incidence the peak is a^2 wide, below the steps of m itself
-        let t2 = (((1.0 - mu) - from_peak) * (1.0 + m)).max(0.0);
+        let t2 = (((1.0 - mu) - from_peak) * (1.0 + m)).map(|x| x.max(0.0));
         let t = t2.sqrt();
         let sum = mu + m;
         let w = sum * sum;
         let plus = s + t;
-        // s - t = (m - mu)(m + mu) / (s + t)
-        let minus = from_peak * sum / plus.max(f64::MIN_POSITIVE);
-        let r2 = (minus * minus + a2 * w) * (plus * plus + a2 * w);
+        let plus2 = plus * plus;
+        // R (s + t), since s - t = (m - mu)(m + mu) / (s + t)
+        let r = (w * (from_peak * from_peak + a2 * plus2) * (plus2 + a2 * w)).sqrt();
         let c = s * s + t2 + a2 * w;
         let u = b * w;
         let root_i = (m * m + a2 * t2).sqrt();
         // G2 / mu, finite at mu = 0
-        let g = match self.masking {
-            Masking::Correlated => 2.0 * m / (mu * root_i + m * self.root_o),
-            Masking::Separable => 4.0 * m / ((m + root_i) * (mu + self.root_o)),
+        let (above, below) = match self.masking {
+            Masking::Correlated => (2.0 * m, mu * root_i + m * self.root_o),
+            Masking::Separable => (4.0 * m, (m + root_i) * (mu + self.root_o)),
         };
-        let inverse = 1.0 / r2.sqrt();
-        0.5 * a2 * g * (1.0 + u * inverse * (2.0 + u * c * inverse * inverse))
+        let both = 1.0 / (below * r);
+        let inverse = plus * (both * below);
+        (0.5 * a2) * (above * (both * r)) * (1.0 + u * inverse * (2.0 + u * c * inverse * inverse))
+    }
+}
+
+/// A panel: from `from` on, which is `to_peak` from the peak.
+struct Panel {
+    integrand: Integrand,
+    rule: &'static Shared,
+    from: f64,
+    to_peak: f64,
+    length: f64,
+}
+
+impl Kernel for Panel {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run(self) -> f64 {
+        let (node, weight) = (&self.rule.rule.node, &self.rule.rule.weight);
+        let mut total = Lanes::all(0.0);
+        let mut add = |x: Lanes, w: Lanes| {
+            let step = self.length * x;
+            total = total + w * self.integrand.at(self.from + step, self.to_peak + step);
+        };
+        let (nodes, weights) = (node.chunks_exact(LANES), weight.chunks_exact(LANES));
+        // what is left is filled up with its own first node, of weight 0
+        let (mut x, mut w) = (Lanes::all(nodes.remainder().first().copied().unwrap_or(0.5)), Lanes::all(0.0));
+        for (lane, (n, v)) in nodes.remainder().iter().zip(weights.remainder()).enumerate() {
+            (x.0[lane], w.0[lane]) = (*n, *v);
+        }
+        for (n, v) in nodes.zip(weights) {
+            add(Lanes([n[0], n[1], n[2], n[3]]), Lanes([v[0], v[1], v[2], v[3]]));
+        }
+        add(x, w);
+        (total.0[0] + total.0[1]) + (total.0[2] + total.0[3])
     }
 }

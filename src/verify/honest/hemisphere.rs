@@ -157,6 +157,7 @@ impl Wanted<'_> {
     /// The sum along an azimuth.
     fn row(&self, wo: DVec3, psi: f64, narrow: f64, target: f64, again: bool) -> Sum {
         let along = self.view.sine() * libm::cos(psi);
+        let azimuth = libm::sincos(self.view.phi + psi);
         let mut total = Sum::ZERO;
         for [from, to] in self.spans(wo.z, along) {
             let length = to - from;
@@ -172,7 +173,7 @@ impl Wanted<'_> {
                 let (part, slope) = if y < 1.0 { near.at(y) } else { far.at(2.0 - y) };
                 let step = 0.5 * length * part;
                 let t = if y < 1.0 { from + step } else { to - step };
-                let mut one = self.facet(wo, psi, t);
+                let mut one = self.facet(wo, azimuth, t);
                 one.scale(0.5 * length * slope);
                 one
             });
@@ -201,11 +202,10 @@ impl Wanted<'_> {
         if crossing { vec![[first, last]] } else { vec![[0.0, first], [first, last], [last, end]] }
     }
 
-    /// The integrand at a half vector at angle `t` to the normal and `psi` to the plane of the view.
-    fn facet(&self, wo: DVec3, psi: f64, t: f64) -> Sum {
+    /// The integrand at a half vector at angle `t` to the normal; sine and cosine of its azimuth.
+    fn facet(&self, wo: DVec3, (sin_p, cos_p): (f64, f64), t: f64) -> Sum {
         self.budget.set(self.budget.get().saturating_sub(1));
         let (sin, cos) = libm::sincos(t);
-        let (sin_p, cos_p) = libm::sincos(self.view.phi + psi);
         let wh = DVec3::new(sin * cos_p, sin * sin_p, cos);
         let v = wo.dot(wh);
         if v <= 0.0 {
@@ -243,11 +243,11 @@ impl Wanted<'_> {
     fn narrow(&self, wo: DVec3, quarters: u32) -> f64 {
         let mut seen: Vec<(f64, f64)> = Vec::new();
         for i in 0..=LOOKS[1] * quarters / 2 {
-            let psi = PI * f64::from(i) / f64::from(LOOKS[1]);
+            let azimuth = libm::sincos(self.view.phi + PI * f64::from(i) / f64::from(LOOKS[1]));
             for j in 0..=LOOKS[0] {
                 let t = LEAST_ANGLE * libm::pow(1.5 / LEAST_ANGLE, f64::from(j) / f64::from(LOOKS[0]));
                 // per decade of the angle
-                seen.push((t, t * self.facet(wo, psi, t).value[0].abs()));
+                seen.push((t, t * self.facet(wo, azimuth, t).value[0].abs()));
             }
         }
         let largest = seen.iter().map(|s| s.1).fold(0.0, f64::max);
@@ -276,7 +276,10 @@ impl Spread {
 
     /// Value and slope.
     fn at(self, x: f64) -> (f64, f64) {
-        let y = self.bend * x;
-        (self.scale * libm::sinh(y), self.scale * self.bend * libm::cosh(y))
+        // e^y - 1, of which both are made without a difference
+        let more = libm::expm1(self.bend * x);
+        let below = 1.0 / (1.0 + more);
+        let (sinh, cosh) = (0.5 * (more + more * below), 0.5 * (1.0 + more + below));
+        (self.scale * sinh, self.scale * self.bend * cosh)
     }
 }

@@ -7,7 +7,8 @@ use crate::tables::integral::Functional;
 pub(super) fn weight(g: Functional, v: f64) -> f64 {
     // opposite directions in the horizon have v = 0, rounding may leave a little more than 1
     let v = v.clamp(0.0, 1.0);
-    let fifth = libm::pow(1.0 - v, 5.0);
+    // multiplied out; the bakers take powers of the difference
+    let fifth = 1.0 - v * (5.0 - v * (10.0 - v * (10.0 - v * (5.0 - v))));
     match g {
         Functional::One => 1.0,
         Functional::Schlick => fifth,
