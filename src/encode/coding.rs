@@ -113,14 +113,36 @@ pub(crate) fn rgbd_nearest(texel: &[f64]) -> ([u8; 3], u8) {
     best
 }
 
+/// Equal parts of [0, 1] for each of which [`gamma_below`] knows where to begin.
+const PARTS: u16 = 4096;
+
+/// For the beginning of each part the largest code that stands for no more.
+fn gamma_below(v: f64) -> u8 {
+    static BELOW: LazyLock<Vec<u8>> = LazyLock::new(|| {
+        let gamma = gamma();
+        let of = |k: u16| {
+            let v = f64::from(k) / f64::from(PARTS);
+            let above = gamma.partition_point(|g| *g <= v).max(1);
+            u8::try_from(above - 1).unwrap_or(u8::MAX)
+        };
+        (0..=PARTS).map(of).collect()
+    });
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+    let part = (v.clamp(0.0, 1.0) * f64::from(PARTS)) as usize;
+    BELOW[part]
+}
+
 /// The code whose value is nearest to `v` at `d`; ties to the even code.
 fn gamma_nearest(v: f64, d: u8) -> u8 {
-    let (mut low, mut high) = (0u8, 255u8);
-    // invariant: value(low) <= v, and v < value(high) unless high is still 255
-    while high - low > 1 {
-        let middle = low + (high - low) / 2;
-        if rgbd(middle, d) <= v { low = middle } else { high = middle }
+    // value(low) <= v < value(low + 1), or low is 0 or 254
+    let mut low = gamma_below(v * (f64::from(d) / 255.0)).min(254);
+    while low > 0 && rgbd(low, d) > v {
+        low -= 1;
     }
+    while low < 254 && rgbd(low + 1, d) <= v {
+        low += 1;
+    }
+    let high = low + 1;
     let (below, above) = (v - rgbd(low, d), rgbd(high, d) - v);
     let tie = (below - above).abs() == 0.0;
     if below < above || tie && low % 2 == 0 { low } else { high }

@@ -6,6 +6,8 @@
 //! * Least squares: the v that minimises `sum w (A v - f)^2`. The weights are those of Simpson's rule in axis
 //!   coordinates (`i / (len - 1)` or `(i + 1/2) / len`, so the measure of the texture, not of mu), with panels that end
 //!   where the reading has its kinks: products of the reader's weights are integrated exactly.
+//!   Beyond the outermost texel centres a reader clamps, one texel serves a strip and no fit can mend it: those samples count for a
+//!   tenth ([`MARGIN`]), so that they do not bend the cells beside them.
 //! * Minimax: the v that minimises the largest `r = |A v - f| / s`, by least `sum w r^p` for p rising from 3 to 64, each
 //!   by Newton steps, which are least squares with the weights `w r^(p - 2)`. Of all that it passes the best is kept,
 //!   so its largest error at the samples is never above that of the exact values. With s = 1 everything would serve the
@@ -101,6 +103,9 @@ impl Texels {
     }
 }
 
+/// Weight in least squares of what lies beyond the outermost texel centres.
+pub const MARGIN: f64 = 0.1;
+
 /// Most steps of a linear solution; the matrix is close to diagonal and needs about 30.
 const STEPS: usize = 200;
 /// Residual, relative to the first one, at which a solution is done.
@@ -146,18 +151,31 @@ pub fn places(grid: &Grid, per_cell: usize) -> Vec<([f64; MAX_AXES], f64)> {
 #[must_use]
 pub fn places_count(grid: &Grid, per_cell: usize) -> usize {
     let cells = grid.axes().iter().map(|a| if a.texel == Texel::Center { a.len } else { a.len - 1 });
-    cells.fold(1, |n: usize, cells| n.saturating_mul(cells * per_cell + 1))
+    cells.fold(1, |n: usize, cells| n.saturating_mul(2 * (panels(cells * per_cell).len() - 1) + 1))
 }
 
-/// Simpson's rule on [0, 1] with an even number of intervals: places and weights.
+/// Parts of the first panel of an axis at which it is cut: at grazing views reflectances turn within a part of the first texel.
+const CUTS: [f64; 2] = [1.0 / 16.0, 1.0 / 4.0];
+
+/// Where panels of two intervals each end, in [0, 1].
+fn panels(intervals: usize) -> Vec<f64> {
+    let width = 2.0 / count(intervals);
+    let cuts = CUTS.map(|cut| cut * width);
+    let even = (1..=intervals / 2).map(|k| count(2 * k) / count(intervals));
+    [0.0].into_iter().chain(cuts).chain(even).collect()
+}
+
+/// Simpson's rule on [0, 1] with an even number of intervals, the first two cut further: places and weights.
 fn simpson(intervals: usize) -> Vec<(f64, f64)> {
-    let weight = |j: usize| match j {
-        0 => 1.0,
-        j if j == intervals => 1.0,
-        j if j % 2 == 1 => 4.0,
-        _ => 2.0,
-    };
-    (0..=intervals).map(|j| (count(j) / count(intervals), weight(j) / (3.0 * count(intervals)))).collect()
+    let mut line = vec![(0.0, 0.0)];
+    for ends in panels(intervals).windows(2) {
+        let sixth = (ends[1] - ends[0]) / 6.0;
+        if let Some(last) = line.last_mut() {
+            last.1 += sixth;
+        }
+        line.extend([(0.5 * (ends[0] + ends[1]), 4.0 * sixth), (ends[1], sixth)]);
+    }
+    line
 }
 
 /// The reader at many points: which texels each reads, with which weights.
@@ -167,16 +185,20 @@ pub struct Samples {
     /// `[sample][corner]`.
     reads: Vec<(u32, f64)>,
     area: Vec<f64>,
+    /// The area, less where the reader clamps.
+    weight: Vec<f64>,
     texels: usize,
 }
 
 impl Samples {
-    /// Points and the weight of each.
+    /// Points and the part of the domain that each stands for.
     pub fn new<'a>(grid: &Grid, points: impl Iterator<Item = (&'a Point, f64)>) -> Samples {
         let corners = 1 << grid.axes().len();
-        let mut samples = Samples { corners, reads: Vec::new(), area: Vec::new(), texels: grid.len() };
+        let (reads, area, weight) = (Vec::new(), Vec::new(), Vec::new());
+        let mut samples = Samples { corners, reads, area, weight, texels: grid.len() };
         for (point, area) in points {
             let (all, n) = lookup::corners(grid, point);
+            samples.weight.push(if lookup::is_clamped(grid, point) { MARGIN * area } else { area });
             // a grid has at most 2^26 texels
             samples.reads.extend(all[..n].iter().map(|(t, w)| (u32::try_from(*t).unwrap_or(u32::MAX), *w)));
             samples.area.push(area);
@@ -244,7 +266,7 @@ impl Samples {
     /// not always, the best set.
     #[must_use]
     pub fn least_squares(&self, truth: &[f64], start: &[f64], range: [f64; 2], cancel: &Cancel) -> Vec<f64> {
-        self.weighted(&self.area, truth, start, (range, RESIDUAL), cancel)
+        self.weighted(&self.weight, truth, start, (range, RESIDUAL), cancel)
     }
 
     /// The values in `range` that minimise the largest of `|A v - f| / s`, as far as powers up to 64 go; from `start`. s is

@@ -38,6 +38,15 @@ pub fn corners(grid: &Grid, point: &Point) -> ([(usize, f64); MAX_CORNERS], usiz
     (all, 1 << n)
 }
 
+/// Is a point beyond the outermost texels of some axis, where the reader clamps?
+#[must_use]
+pub fn is_clamped(grid: &Grid, point: &Point) -> bool {
+    /// Rounding of a place that is a texel's own.
+    const CLOSE: f64 = 1e-9;
+    let index = grid.index(point);
+    grid.axes().iter().zip(index).any(|(axis, f)| f < -CLOSE || f > super::axis::count(axis.len - 1) + CLOSE)
+}
+
 /// Reads all channels at `point` into `out`. `values` is `[texel][channel]`, channel fastest.
 pub fn read(grid: &Grid, values: &[f64], point: &Point, out: &mut [f64]) {
     let channels = out.len();

@@ -190,7 +190,7 @@ pub struct Reconstruction {
 pub struct TexelRecord {
     /// What the recipe asks for: `least-squares`, `minimax` or `auto`.
     pub asked: String,
-    /// What this file holds: that, or `exact` where fitting gained nothing; `by-channel` if that differs.
+    /// What this file holds: that, or `exact` where fitting gained nothing, or a blend; `by-channel` if that differs.
     pub held: String,
     /// What each channel holds, if that differs.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
@@ -211,7 +211,7 @@ pub struct TexelRecord {
 pub struct ChannelTexels {
     /// Channel id.
     pub channel: String,
-    /// `exact`, `least-squares` or `minimax`.
+    /// `exact`, `least-squares`, `minimax`, or a blend of them such as `0.25 exact + 0.75 minimax`.
     pub held: String,
 }
 

@@ -56,7 +56,7 @@ pub struct Part<'a> {
 
 /// Scales of shared rules are powers of the eighth root of 2: the exponents of the finest and of the coarsest one, beyond which a rule
 /// is Gauss's own to the last bit but one.
-const EIGHTHS: [i32; 2] = [-480, 88];
+const EIGHTHS: [i32; 2] = [-560, 88];
 /// Orders of shared rules.
 const SHARED_ORDERS: usize = 1024;
 /// Scales of shared rules.
@@ -105,14 +105,27 @@ fn eighth(eps: f64) -> i32 {
 /// Charts ask for rules at every view: with scales on a ladder the same few serve all of them.
 #[must_use]
 pub fn shared(eps: f64, order: Order, level: f64) -> &'static Shared {
-    type OfScale = Box<[OnceLock<Shared>]>;
     static RULES: [OnceLock<OfScale>; SCALES] = [const { OnceLock::new() }; SCALES];
     let eighth = eighth(eps);
-    let eps = libm::exp2(0.125 * f64::from(eighth));
-    let count = order.at(level, libm::asinh(1.0 / eps)).min(SHARED_ORDERS);
-    let of_scale = RULES[(eighth - EIGHTHS[0]).unsigned_abs() as usize]
-        .get_or_init(|| (0..SHARED_ORDERS).map(|_| OnceLock::new()).collect());
-    of_scale[count - 1].get_or_init(|| Shared::new(eps, count))
+    let of_scale = RULES[(eighth - EIGHTHS[0]).unsigned_abs() as usize].get_or_init(|| OfScale::new(eighth));
+    let count = order.at(level, of_scale.stretch).min(SHARED_ORDERS);
+    of_scale.rules[count - 1].get_or_init(|| Shared::new(of_scale.eps, count))
+}
+
+/// The rules of one scale, by order.
+struct OfScale {
+    eps: f64,
+    /// `asinh(1 / eps)`.
+    stretch: f64,
+    rules: Box<[OnceLock<Shared>]>,
+}
+
+impl OfScale {
+    fn new(eighth: i32) -> OfScale {
+        let eps = libm::exp2(0.125 * f64::from(eighth));
+        let rules = (0..SHARED_ORDERS).map(|_| OnceLock::new()).collect();
+        OfScale { eps, stretch: libm::asinh(1.0 / eps), rules }
+    }
 }
 
 impl Graded {
@@ -223,5 +236,21 @@ pub fn share_scales(ends: &mut [(f64, f64)]) {
     for i in 0..ends.len() {
         let needed = ends.iter().map(|end| end.1 + (end.0 - ends[i].0).abs());
         ends[i].1 = needed.fold(ends[i].1, f64::min);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Order, eighth, shared};
+
+    #[test]
+    fn shared_rules_are_never_coarser_than_asked_for() {
+        for i in -4000..800 {
+            let eps = libm::exp2(0.01 * f64::from(i));
+            let taken = libm::exp2(0.125 * f64::from(eighth(eps)));
+            assert!(taken <= eps * (1.0 + 1e-15) && taken > 0.917 * eps, "{eps:e}: {taken:e}");
+            let sum: f64 = shared(eps, Order(1.0, 0.35), 4.0).rule.weight.iter().sum();
+            assert!((sum - 1.0).abs() < 1e-14, "{eps:e}: {sum}");
+        }
     }
 }

@@ -14,11 +14,11 @@ use rayon::prelude::*;
 
 /// Intervals into which a cell is divided along each axis, with the most points for which they are taken; the first that
 /// fits is. Small tables can have a ridge within a cell, which four intervals miss.
-const PER_CELL: [(usize, usize); 3] = [(8, 1 << 17), (4, LIMIT), (2, LIMIT)];
+const PER_CELL: [(usize, usize); 3] = [(8, 1 << 17), (4, 1 << 19), (2, LIMIT)];
 /// The same for a trial, which only has to tell whether a table is worth the full fit.
 const PER_CELL_QUICK: [(usize, usize); 2] = [(4, 1 << 14), (2, LIMIT)];
 /// Most points of the truth: two intervals a cell of 1024 x 1024 texels, both ends included.
-const LIMIT: usize = (2 * 1024 + 1) * (2 * 1024 + 1);
+const LIMIT: usize = (2 * 1024 + 5) * (2 * 1024 + 5);
 
 /// The values of a table for every objective, and the truth that they were fitted to.
 pub(super) struct Fitted {
@@ -27,6 +27,11 @@ pub(super) struct Fitted {
     least_squares: Vec<f64>,
     minimax: Vec<f64>,
 }
+
+/// Parts of the exact, the least-squares and the minimax values, in the order of [`Objective::ALL`]; they add up to 1.
+///
+/// Reading is linear in the texels, so that a blend of two is at most as far off as the farther one, and often nearer than both.
+pub(super) type Blend = [f64; 3];
 
 /// How a channel reads over a part of the domain.
 #[derive(Debug, Clone, Copy, Default)]
@@ -56,6 +61,51 @@ impl Fitted {
     /// A point of the truth.
     pub(super) fn point(&self, i: usize) -> &Point {
         &self.truth[i].0
+    }
+
+    /// The texels of a channel as a blend, `[texel]`.
+    pub(super) fn blended(&self, blend: Blend, channel: usize, channels: usize, exact: &[f64]) -> Vec<f64> {
+        let of = |values: &[f64], i: usize| values[i * channels + channel];
+        let one = |i: usize| {
+            let parts = Objective::ALL.iter().zip(blend).filter(|(_, part)| *part > 0.0);
+            parts.map(|(o, part)| part * of(self.values(*o, exact), i)).sum()
+        };
+        (0..exact.len() / channels).map(one).collect()
+    }
+
+    /// How blends of a channel read at these points before they are stored, where the shader takes the channel as it is.
+    pub(super) fn figures_of_blends(
+        &self,
+        grid: &Grid,
+        (channel, channels): (usize, usize),
+        exact: &[f64],
+        blends: &[Blend],
+    ) -> Vec<[Figures; 2]> {
+        let errors = [0, 1, 2].map(|o| {
+            let mut pure = [0.0; 3];
+            pure[o] = 1.0;
+            let mut read = self.samples.read(&self.blended(pure, channel, channels, exact));
+            read.iter_mut().zip(&self.truth).for_each(|(r, t)| *r -= t.1[channel]);
+            read
+        });
+        let practical: Vec<bool> = self.truth.iter().map(|(p, _)| in_practical_domain(grid, p)).collect();
+        let of = |blend: &Blend| {
+            let (mut figures, mut areas) = ([Figures::default(); 2], [0.0; 2]);
+            for (i, area) in self.samples.areas().iter().enumerate() {
+                let error = errors.iter().zip(blend).map(|(e, part)| part * e[i]).sum::<f64>().abs();
+                for part in 0..=usize::from(practical[i]) {
+                    areas[part] += area;
+                    let f = &mut figures[part];
+                    f.mean += area * error;
+                    if error > f.largest {
+                        (f.largest, f.at) = (error, i);
+                    }
+                }
+            }
+            figures.iter_mut().zip(areas).filter(|(_, a)| *a > 0.0).for_each(|(f, a)| f.mean /= a);
+            figures
+        };
+        blends.par_iter().map(of).collect()
     }
 
     /// How stored values read at these points: for each channel as measured, over the whole and the practical domain.

@@ -1,13 +1,14 @@
 //! What the texels of a file hold: the integrals, or values fitted to the reader; and which of them, where the recipe leaves
 //! that open.
 
-use super::fit::{Figures, Fitted};
+use super::fit::{Blend, Figures, Fitted};
 use crate::cancel::Cancel;
 use crate::encode::{self, Quantised, Storage, Unstored};
 use crate::grid::Table;
 use crate::grid::fit::{Objective, Texels};
 use crate::grid::provenance::{ChannelTexels, ChoiceRecord, Reconstruction, Spread, TexelRecord};
 use crate::grid::table::named;
+use crate::math::figures::exact;
 use crate::tables::Bound;
 use crate::verify::reconstruction::Probe;
 
@@ -49,12 +50,13 @@ impl Source<'_> {
             return Ok(Chosen { stored, reconstruction, texels: None });
         };
         let n = self.table.channels.len();
-        let [exact, squares, minimax] = Objective::ALL.map(|o| self.candidate(fitted, &vec![o; n], storage));
+        let [exact, squares, minimax] =
+            Objective::ALL.map(|o| self.candidate(fitted, &vec![pure(o); n], storage));
         let mut all = vec![exact?, squares?, minimax?];
         let measured = [0, 1, 2].map(|i| self.measure(fitted, &all[i], i > 0));
         let held = match asked {
-            Texels::Held(Objective::Minimax) if no_better(&measured) => vec![Objective::Exact; n],
-            Texels::Held(objective) => vec![objective; n],
+            Texels::Held(Objective::Minimax) if no_better(&measured) => vec![pure(Objective::Exact); n],
+            Texels::Held(objective) => vec![pure(objective); n],
             Texels::Better => self.better(fitted, &all, storage)?,
         };
         let mut record = self.record(fitted, asked, &held);
@@ -66,7 +68,7 @@ impl Source<'_> {
                 practical: r.practical.clone(),
             });
         }
-        let index = Objective::ALL.iter().position(|o| held.iter().all(|h| h == o));
+        let index = Objective::ALL.iter().position(|o| held.iter().all(|h| *h == pure(*o)));
         let (stored, reconstruction) = match index {
             Some(i) => (all.swap_remove(i).stored, measured[i].clone()),
             None => {
@@ -78,47 +80,40 @@ impl Source<'_> {
         Ok(Chosen { stored, reconstruction, texels: Some(record) })
     }
 
-    fn record(&self, fitted: &Fitted, asked: Texels, held: &[Objective]) -> TexelRecord {
+    fn record(&self, fitted: &Fitted, asked: Texels, held: &[Blend]) -> TexelRecord {
         let values = self.mix(fitted, held);
         let change = values.iter().zip(&self.table.values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        let first = held.first().copied().unwrap_or_default();
+        let first = held.first().copied().unwrap_or(pure(Objective::Exact));
+        let plain = Objective::ALL.into_iter().find(|o| pure(*o) == first);
         let mut record = TexelRecord {
             asked: asked.id().to_owned(),
-            held: first.id().to_owned(),
+            held: named_blend(first),
             by_channel: Vec::new(),
-            meaning: first.meaning().to_owned(),
+            meaning: plain.map_or(BLENDED, Objective::meaning).to_owned(),
             samples: fitted.points(),
             largest_change: change,
             choices: Vec::new(),
         };
         if held.iter().any(|h| *h != first) {
             "by-channel".clone_into(&mut record.held);
-            "texels of fitted channels are not samples: together they read, interpolated, closest to the truth"
-                .clone_into(&mut record.meaning);
-            record.by_channel = self
-                .table
-                .channels
-                .iter()
-                .zip(held)
-                .map(|(c, h)| ChannelTexels { channel: c.id.clone(), held: h.id().to_owned() })
+            BLENDED.clone_into(&mut record.meaning);
+            let channels = self.table.channels.iter().zip(held);
+            record.by_channel = channels
+                .map(|(c, h)| ChannelTexels { channel: c.id.clone(), held: named_blend(*h) })
                 .collect();
         }
         record
     }
 
-    /// `[texel][channel]`, each channel of its objective.
-    fn mix(&self, fitted: &Fitted, held: &[Objective]) -> Vec<f64> {
-        let exact = &self.table.values;
-        let of: Vec<&[f64]> = held.iter().map(|o| fitted.values(*o, exact)).collect();
-        (0..exact.len()).map(|i| of[i % of.len()][i]).collect()
+    /// `[texel][channel]`, each channel a blend.
+    fn mix(&self, fitted: &Fitted, held: &[Blend]) -> Vec<f64> {
+        let (exact, n) = (&self.table.values, held.len());
+        let channel = |(c, blend): (usize, &Blend)| fitted.blended(*blend, c, n, exact);
+        let channels: Vec<Vec<f64>> = held.iter().enumerate().map(channel).collect();
+        (0..exact.len()).map(|i| channels[i % n][i / n]).collect()
     }
 
-    fn candidate(
-        &self,
-        fitted: &Fitted,
-        held: &[Objective],
-        storage: Storage,
-    ) -> Result<Candidate, Unstored> {
+    fn candidate(&self, fitted: &Fitted, held: &[Blend], storage: Storage) -> Result<Candidate, Unstored> {
         let table = Table { values: self.mix(fitted, held), ..self.table.clone() };
         let stored = encode::quantise_table_until(self.cancel, &table, storage)?;
         let figures = fitted.figures(self.bound, &stored.values);
@@ -152,24 +147,83 @@ impl Source<'_> {
         }
     }
 
-    /// What each channel should hold: the best of what is better than the exact values, for each by itself where the shader
-    /// takes them as they are; if channels that are stored together then spoil each other, for all of them.
-    fn better(
-        &self,
-        fitted: &Fitted,
-        all: &[Candidate],
-        storage: Storage,
-    ) -> Result<Vec<Objective>, Unstored> {
+    /// What each channel should hold: the best of what is better than the exact values, a blend for each by itself where the shader
+    /// takes them as they are; if channels that are stored together then spoil each other, one choice for all of them.
+    fn better(&self, fitted: &Fitted, all: &[Candidate], storage: Storage) -> Result<Vec<Blend>, Unstored> {
         let n = self.table.channels.len();
         if self.bound.baker.decoded().is_none() {
-            let alone: Vec<Objective> = (0..n).map(|c| best(all, c..=c)).collect();
-            let mixed = self.candidate(fitted, &alone, storage)?;
-            if (0..n).all(|c| gain(&all[0].figures[c], &mixed.figures[c]).is_some()) {
-                return Ok(alone);
+            let ranked: Vec<Vec<Blend>> = (0..n).map(|c| self.ranked(fitted, c)).collect();
+            let mut at = vec![0; n];
+            loop {
+                let held: Vec<Blend> = ranked.iter().zip(&at).map(|(blends, i)| blends[*i]).collect();
+                let mixed = self.candidate(fitted, &held, storage)?;
+                // rounding may have spoilt what was gained: the next one then; exact values are never spoilt
+                let exact = pure(Objective::Exact);
+                let spoilt = (0..n).filter(|c| {
+                    held[*c] != exact && gain(&all[0].figures[*c], &mixed.figures[*c], LUCK).is_none()
+                });
+                let spoilt: Vec<usize> = spoilt.collect();
+                if spoilt.is_empty() {
+                    let whole = (0..n).all(|c| gain(&all[0].figures[c], &mixed.figures[c], LUCK).is_some());
+                    if whole {
+                        return Ok(held);
+                    }
+                    break;
+                }
+                spoilt.into_iter().for_each(|c| at[c] = (at[c] + SKIPPED).min(ranked[c].len() - 1));
             }
         }
         let last = all[0].figures.len().saturating_sub(1);
-        Ok(vec![best(all, 0..=last); n])
+        Ok(vec![pure(best(all, 0..=last)); n])
+    }
+
+    /// The blends of a channel that are worse than the exact values by no measure, the best one first and the exact values last.
+    fn ranked(&self, fitted: &Fitted, channel: usize) -> Vec<Blend> {
+        let blends: Vec<Blend> = blends();
+        let (grid, n) = (&self.bound.spec.grid, self.table.channels.len());
+        let figures = fitted.figures_of_blends(grid, (channel, n), &self.table.values, &blends);
+        let gains = figures.iter().map(|f| gain(&figures[0], f, 0.0));
+        let mut better: Vec<(f64, Blend)> =
+            gains.zip(&blends).filter_map(|(gain, blend)| Some((gain?, *blend))).collect();
+        better.retain(|(gain, _)| *gain < libm::log(WORTH));
+        better.sort_by(|a, b| a.0.total_cmp(&b.0));
+        better.into_iter().map(|(_, blend)| blend).chain([blends[0]]).collect()
+    }
+}
+
+/// How many blends are passed over after one that rounding has spoilt: its neighbours are much like it.
+const SKIPPED: usize = 3;
+
+/// What is said of texels that are no one objective's.
+const BLENDED: &str =
+    "texels of fitted channels are not samples: together they read, interpolated, closest to the truth";
+
+/// All of one.
+fn pure(objective: Objective) -> Blend {
+    Objective::ALL.map(|o| if o == objective { 1.0 } else { 0.0 })
+}
+
+/// Steps of the parts of a blend.
+const STEPS: u32 = 8;
+
+/// The blends that are tried, the exact values first.
+fn blends() -> Vec<Blend> {
+    let part = |k: u32| f64::from(k) / f64::from(STEPS);
+    let of = |i: u32| (0..=i).map(move |j| [part(STEPS - i), part(i - j), part(j)]);
+    (0..=STEPS).flat_map(of).collect()
+}
+
+/// `least-squares`, or `0.25 exact + 0.75 minimax`.
+fn named_blend(blend: Blend) -> String {
+    let parts: Vec<(Objective, f64)> =
+        Objective::ALL.into_iter().zip(blend).filter(|(_, part)| *part > 0.0).collect();
+    match &parts[..] {
+        [(one, _)] => one.id().to_owned(),
+        _ => parts
+            .iter()
+            .map(|(o, part)| format!("{} {}", exact(part), o.id()))
+            .collect::<Vec<_>>()
+            .join(" + "),
     }
 }
 
@@ -178,7 +232,7 @@ fn best(all: &[Candidate], channels: std::ops::RangeInclusive<usize>) -> Objecti
     let mut best = (libm::log(WORTH), Objective::Exact);
     for (objective, candidate) in Objective::ALL.into_iter().zip(all).skip(1) {
         let gains: Option<Vec<f64>> =
-            channels.clone().map(|c| gain(&all[0].figures[c], &candidate.figures[c])).collect();
+            channels.clone().map(|c| gain(&all[0].figures[c], &candidate.figures[c], 0.0)).collect();
         let Some(gains) = gains else { continue };
         let mean = gains.iter().sum::<f64>() / gains.len().max(1) as f64;
         if mean < best.0 {
@@ -188,12 +242,15 @@ fn best(all: &[Candidate], channels: std::ops::RangeInclusive<usize>) -> Objecti
     best.1
 }
 
-/// Mean logarithm of the ratios of the four figures of a channel; none if one of them is worse.
-fn gain(exact: &[Figures; 2], fitted: &[Figures; 2]) -> Option<f64> {
+/// By how much a figure may be worse after rounding, which falls on either side, of a blend that gains without it.
+const LUCK: f64 = 0.02;
+
+/// Mean logarithm of the ratios of the four figures of a channel; none if one of them is worse by more than a part of `luck`.
+fn gain(exact: &[Figures; 2], fitted: &[Figures; 2], luck: f64) -> Option<f64> {
     let mut sum = 0.0;
     for (e, f) in exact.iter().zip(fitted) {
         for (e, f) in [(e.largest, f.largest), (e.mean, f.mean)] {
-            if f > e + NEGLIGIBLE {
+            if f > e * (1.0 + luck) + NEGLIGIBLE {
                 return None;
             }
             sum += libm::log((f + NEGLIGIBLE) / (e + NEGLIGIBLE));

@@ -3,7 +3,8 @@
 //!
 //! Points: the middles of all cells, and for centre axes the edges of the domain (where a reader clamps). Where
 //! that is more than a limit, every n-th one. Then the cells of the largest errors are searched on a finer
-//! grid of 5 x 5 points each, so that a corner does not slip through between two middles.
+//! grid of 5 x 5 points each, and the neighbourhoods of the largest errors among those on finer grids again, so that neither a corner
+//! nor the ridge of grazing views slips through.
 
 use crate::cancel::{Cancel, Steps, Tell, untold};
 use crate::grid::axis::count;
@@ -23,6 +24,10 @@ pub const PRACTICAL_ALPHA: f64 = 0.09 * 0.09;
 
 /// Cells that are searched more finely, of the whole and of the practical domain each.
 const SEARCHED: usize = 8;
+
+/// Sizes of the neighbourhoods that are searched then, in cells, and of how many points of the whole and of the practical domain each.
+const ZOOMS: [f64; 2] = [0.25, 0.06];
+const ZOOMED: usize = 2;
 
 /// Points between the texels with fresh integrals, made once and compared with every stored form of a table.
 #[derive(Debug)]
@@ -106,10 +111,16 @@ impl<'a> Probe<'a> {
         worst.sort_by(|a, b| b.largest.total_cmp(&a.largest));
         // a cell counts if a part of it is inside
         let inside = |x: &[f64; MAX_AXES]| in_practical_domain(grid, &grid.at_coordinates(x));
-        let practical = worst.iter().filter(|c| around(grid, &c.fresh.x).iter().any(inside)).take(SEARCHED);
+        let cell = |c: &&&Compared<'_>| around(grid, &c.fresh.x, 1.0).iter().any(inside);
+        let practical = worst.iter().filter(cell).take(SEARCHED);
+        let near = |c: &&Compared<'_>| around(grid, &c.fresh.x, 1.0);
         let cells: Vec<[f64; MAX_AXES]> =
-            worst.iter().take(SEARCHED).chain(practical).flat_map(|c| around(grid, &c.fresh.x)).collect();
-        let fine = self.integrate(&cells, &untold);
+            worst.iter().take(SEARCHED).chain(practical).flat_map(near).collect();
+        let mut fine = self.integrate(&cells, &untold);
+        for size in ZOOMS {
+            let next = self.worst_of(reader, stored, &fine, size);
+            fine.extend(self.integrate(&next, &untold));
+        }
         let searched = self.compare_all(reader, stored, &fine);
         let whole = self.spread(&regular, &searched, |_| true);
         Reconstruction {
@@ -120,6 +131,16 @@ impl<'a> Probe<'a> {
                 .then(|| self.spread(&regular, &searched, |p| in_practical_domain(grid, p)))
                 .flatten(),
         }
+    }
+
+    /// Points round the largest errors, of the whole and of the practical domain.
+    fn worst_of(&self, reader: &Grid, stored: &[f64], fine: &[Fresh], size: f64) -> Vec<[f64; MAX_AXES]> {
+        let grid = &self.bound.spec.grid;
+        let mut worst = self.compare_all(reader, stored, fine);
+        worst.sort_by(|a, b| b.largest.total_cmp(&a.largest));
+        let practical = worst.iter().filter(|c| in_practical_domain(grid, &c.fresh.point)).take(ZOOMED);
+        let chosen = worst.iter().take(ZOOMED).chain(practical);
+        chosen.flat_map(|c| around(grid, &c.fresh.x, size)).collect()
     }
 
     /// What the errors are measured on.
@@ -206,8 +227,8 @@ fn filter(grid: &Grid) -> &'static str {
     }
 }
 
-/// A 5 x 5 grid (5^n) over the cell round `x`.
-fn around(grid: &Grid, x: &[f64; MAX_AXES]) -> Vec<[f64; MAX_AXES]> {
+/// A 5 x 5 grid (5^n) over a neighbourhood of `x`, its size in cells.
+fn around(grid: &Grid, x: &[f64; MAX_AXES], size: f64) -> Vec<[f64; MAX_AXES]> {
     let n = grid.axes().len();
     let mut points = Vec::new();
     for mut code in 0..5usize.pow(u32::try_from(n).unwrap_or(0)) {
@@ -215,7 +236,7 @@ fn around(grid: &Grid, x: &[f64; MAX_AXES]) -> Vec<[f64; MAX_AXES]> {
         for (p, axis) in p.iter_mut().zip(grid.axes()) {
             let cells = if axis.texel == Texel::Center { axis.len } else { axis.len - 1 };
             let t = count(code % 5) / 4.0 - 0.5;
-            *p = (*p + 0.96 * t / count(cells)).clamp(0.0, 1.0);
+            *p = (*p + 0.96 * size * t / count(cells)).clamp(0.0, 1.0);
             code /= 5;
         }
         points.push(p);

@@ -36,9 +36,10 @@ pub(crate) fn ltc(mu: f64, r: f64) -> [f64; 2] {
     [remap(r), remap((1.0 - mu).sqrt())]
 }
 
-/// Cosines or roughnesses: evenly over the texture, on no texel of any table.
+/// Cosines or roughnesses: evenly over the texture, on no texel of any table, six to a cell of 64: fewer would pass by the ridges
+/// between the texels.
 fn points() -> Vec<f64> {
-    (0..151).map(|i| (f64::from(i) + 0.5) / 151.0).collect()
+    (0..401).map(|i| (f64::from(i) + 0.5) / 401.0).collect()
 }
 
 pub(crate) fn truth(kind: &str, channels: &[&str]) -> Bound {
@@ -67,8 +68,12 @@ fn errors(case: &Case<'_>, textures: &[&Texture]) -> Vec<Vec<Errors>> {
     let (mut count, mut practical) = (0.0, 0.0);
     let places: Vec<(f64, f64)> =
         points().iter().flat_map(|mu| points().into_iter().map(|r| (*mu, r))).collect();
-    let integral = |(mu, r): &(f64, f64)| bound.baker.texel(&[*mu, r * r], 1e-6).unwrap().value;
-    let integrals: Vec<_> = places.par_iter().map(integral).collect();
+    let group = |part: &[(f64, f64)]| {
+        let at: Vec<[f64; 2]> = part.iter().map(|(mu, r)| [*mu, r * r]).collect();
+        let at: Vec<&[f64]> = at.iter().map(<[f64; 2]>::as_slice).collect();
+        bound.baker.texels(&at, 1e-6).into_iter().map(|e| e.unwrap().value).collect::<Vec<_>>()
+    };
+    let integrals: Vec<_> = places.par_chunks(bound.baker.group()).flat_map_iter(group).collect();
     for ((mu, r), exact) in places.into_iter().zip(integrals) {
         let inside = mu >= 0.05 && r >= 0.09;
         count += 1.0;
@@ -133,7 +138,7 @@ pub(crate) fn agree(name: &str, shipped: &Texture, baked: &Texture, bounds: &[[f
 }
 
 /// A texture read by `read` from the file that a plan with samples in its texels writes.
-fn samples(plan: Plan, read: impl Fn(&Path) -> Texture) -> Texture {
+pub(crate) fn samples(plan: Plan, read: impl Fn(&Path) -> Texture) -> Texture {
     let out = tempfile::tempdir().unwrap();
     read(&bake(&exact(plan), out.path()).remove(0))
 }
@@ -141,6 +146,10 @@ fn samples(plan: Plan, read: impl Fn(&Path) -> Texture) -> Texture {
 pub(crate) fn size(path: &Path) -> u64 {
     std::fs::metadata(path).unwrap().len()
 }
+
+/// How much worse a table may be whose rows are kept out of place on purpose, as those of the shipped one are: the error is that of
+/// the place, and the noise of the shipped one may fall on the better side.
+const OUT_OF_PLACE: f64 = 1.04;
 
 /// Rounding of halves, of both tables.
 pub(crate) const HALF: f64 = 2.0 / 2048.0;
@@ -164,7 +173,7 @@ fn bevy() {
         kind: "dfg",
         channels: &["dfg.scale", "dfg.bias"],
         at: |mu, r| [mu, r],
-        luck: 1.06,
+        luck: 1.0,
     };
     not_worse(&case, &shipped, &baked, size(&file), 0.0);
 }
@@ -190,7 +199,7 @@ fn three() {
         kind: "dfg",
         channels: &["dfg.scale", "dfg.bias"],
         at: |mu, r| [r, mu],
-        luck: 1.01,
+        luck: 1.0,
     };
     not_worse(&case, &shipped, &baked, size(&file), 0.0);
 }
@@ -212,7 +221,7 @@ fn filament() {
             kind: "dfg",
             channels: &["dfg.fc", "dfg.total", "dfg.cloth"],
             at: |mu, r| [mu, r],
-            luck: 1.06,
+            luck: if id == "filament" { OUT_OF_PLACE } else { 1.0 },
         };
         not_worse(&case, &shipped, &baked, size(&file), 0.0);
     }
@@ -232,7 +241,7 @@ fn babylon() {
         kind: "dfg",
         channels: &["dfg.fc", "dfg.total", "dfg.cloth"],
         at: |mu, r| [mu, r],
-        luck: 1.2,
+        luck: OUT_OF_PLACE,
     };
     not_worse(&case, &shipped, &baked, size(&file), 0.0);
 }
@@ -348,7 +357,7 @@ fn area_lights() {
         kind: "ltc-magnitude",
         channels: &["ltc.magnitude", "ltc.fresnel"],
         at: ltc,
-        luck: 1.26,
+        luck: 1.0,
     };
     not_worse(&case, &shipped, &baked, size(&file), 0.0);
 }
@@ -365,13 +374,17 @@ fn registry_knows_how_far_off_the_shipped_files_are() {
         ("filament", "filament-dfg", "filament/dfg_rgb16f.npy"),
         ("babylon", "babylon-environment-brdf", "babylon/environmentBRDF_decoded_linear.npy"),
         ("selfshadow-ltc", "ltc-2", "selfshadow_ltc/ltc_js_g_ltc_2.npy"),
+        ("bevy", "bevy-ltc-magnitude", "bevy/ltc_half.npy"),
         ("cycles", "cycles-ggx-E", "cycles/ggx_E.npy"),
         ("cycles", "cycles-ggx-Eavg", "cycles/ggx_Eavg.npy"),
     ] {
         let plan = plan(id, |name| name == table);
         let planned = &plan.tables[0];
         let probe = Probe::new(&planned.bound, planned.tolerance, 1 << 16);
-        let values = npy(&dir.join(file));
+        let mut values = npy(&dir.join(file));
+        // the second layer of two
+        values
+            .drain(..values.len() - planned.bound.spec.grid.len() * planned.bound.spec.layout.channels.len());
         let read = probe.measure_without_offset(&values).unwrap_or_else(|| probe.measure(&values));
         let practical = read.practical.unwrap_or(read.whole.clone());
         let [whole, practical] = [read.whole, practical].map(|s| [s.largest.value, s.mean]);
