@@ -145,7 +145,7 @@ fn gamma_nearest(v: f64, d: u8) -> u8 {
     let high = low + 1;
     let (below, above) = (v - rgbd(low, d), rgbd(high, d) - v);
     let tie = (below - above).abs() == 0.0;
-    if below < above || tie && low % 2 == 0 { low } else { high }
+    if below < above || tie && low.is_multiple_of(2) { low } else { high }
 }
 
 impl Coding {

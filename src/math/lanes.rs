@@ -49,11 +49,9 @@ macro_rules! operator {
             type Output = Lanes;
             #[inline(always)]
             fn $function(self, other: Lanes) -> Lanes {
-                let mut result = self;
-                for (r, o) in result.0.iter_mut().zip(other.0) {
-                    *r = *r $sign o;
-                }
-                result
+                let [a, b, c, d] = self.0;
+                let [e, f, g, h] = other.0;
+                Lanes([a $sign e, b $sign f, c $sign g, d $sign h])
             }
         }
         impl $trait<f64> for Lanes {

@@ -28,10 +28,18 @@ pub(super) struct Fitted {
     minimax: Vec<f64>,
 }
 
-/// Parts of the exact, the least-squares and the minimax values, in the order of [`Objective::ALL`]; they add up to 1.
+/// Eighths of the exact, the least-squares and the minimax values, in the order of [`Objective::ALL`]; they add up to eight.
 ///
 /// Reading is linear in the texels, so that a blend of two is at most as far off as the farther one, and often nearer than both.
-pub(super) type Blend = [f64; 3];
+pub(super) type Blend = [u8; 3];
+
+/// The whole of a blend.
+pub(super) const WHOLE: u8 = 8;
+
+/// Weights of a blend.
+fn weights(blend: Blend) -> [f64; 3] {
+    blend.map(|part| f64::from(part) / f64::from(WHOLE))
+}
 
 /// How a channel reads over a part of the domain.
 #[derive(Debug, Clone, Copy, Default)]
@@ -67,7 +75,7 @@ impl Fitted {
     pub(super) fn blended(&self, blend: Blend, channel: usize, channels: usize, exact: &[f64]) -> Vec<f64> {
         let of = |values: &[f64], i: usize| values[i * channels + channel];
         let one = |i: usize| {
-            let parts = Objective::ALL.iter().zip(blend).filter(|(_, part)| *part > 0.0);
+            let parts = Objective::ALL.iter().zip(weights(blend)).filter(|(_, part)| *part > 0.0);
             parts.map(|(o, part)| part * of(self.values(*o, exact), i)).sum()
         };
         (0..exact.len() / channels).map(one).collect()
@@ -82,14 +90,15 @@ impl Fitted {
         blends: &[Blend],
     ) -> Vec<[Figures; 2]> {
         let errors = [0, 1, 2].map(|o| {
-            let mut pure = [0.0; 3];
-            pure[o] = 1.0;
+            let mut pure = [0; 3];
+            pure[o] = WHOLE;
             let mut read = self.samples.read(&self.blended(pure, channel, channels, exact));
             read.iter_mut().zip(&self.truth).for_each(|(r, t)| *r -= t.1[channel]);
             read
         });
         let practical: Vec<bool> = self.truth.iter().map(|(p, _)| in_practical_domain(grid, p)).collect();
         let of = |blend: &Blend| {
+            let blend = weights(*blend);
             let (mut figures, mut areas) = ([Figures::default(); 2], [0.0; 2]);
             for (i, area) in self.samples.areas().iter().enumerate() {
                 let error = errors.iter().zip(blend).map(|(e, part)| part * e[i]).sum::<f64>().abs();

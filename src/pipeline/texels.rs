@@ -1,7 +1,7 @@
 //! What the texels of a file hold: the integrals, or values fitted to the reader; and which of them, where the recipe leaves
 //! that open.
 
-use super::fit::{Blend, Figures, Fitted};
+use super::fit::{Blend, Figures, Fitted, WHOLE};
 use crate::cancel::Cancel;
 use crate::encode::{self, Quantised, Storage, Unstored};
 use crate::grid::Table;
@@ -200,23 +200,23 @@ const BLENDED: &str =
 
 /// All of one.
 fn pure(objective: Objective) -> Blend {
-    Objective::ALL.map(|o| if o == objective { 1.0 } else { 0.0 })
+    Objective::ALL.map(|o| if o == objective { WHOLE } else { 0 })
 }
-
-/// Steps of the parts of a blend.
-const STEPS: u32 = 8;
 
 /// The blends that are tried, the exact values first.
 fn blends() -> Vec<Blend> {
-    let part = |k: u32| f64::from(k) / f64::from(STEPS);
-    let of = |i: u32| (0..=i).map(move |j| [part(STEPS - i), part(i - j), part(j)]);
-    (0..=STEPS).flat_map(of).collect()
+    let of = |i: u8| (0..=i).map(move |j| [WHOLE - i, i - j, j]);
+    (0..=WHOLE).flat_map(of).collect()
 }
 
 /// `least-squares`, or `0.25 exact + 0.75 minimax`.
 fn named_blend(blend: Blend) -> String {
-    let parts: Vec<(Objective, f64)> =
-        Objective::ALL.into_iter().zip(blend).filter(|(_, part)| *part > 0.0).collect();
+    let parts: Vec<(Objective, f64)> = Objective::ALL
+        .into_iter()
+        .zip(blend)
+        .filter(|(_, part)| *part > 0)
+        .map(|(o, part)| (o, f64::from(part) / f64::from(WHOLE)))
+        .collect();
     match &parts[..] {
         [(one, _)] => one.id().to_owned(),
         _ => parts
