@@ -9,6 +9,7 @@ use crate::grid::{Grid, Provenance, Table};
 use crate::plan::Plan;
 use crate::report::page::{self, Against, FileView, Head, Origin, Section, Texels, View};
 use crate::tables::Bound;
+use crate::tables::driver::bake_again;
 use crate::tables::spec::Request;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -266,7 +267,7 @@ fn again(
     let tolerance = p.integration.tolerance;
     let fresh = chosen.par_iter().map(|&t| {
         cancel.check()?;
-        Ok(bound.baker.texel(texels.grid.texel(t).values(), tolerance))
+        Ok(bake_again(&bound, t, tolerance))
     });
     let fresh: Vec<_> = fresh.collect::<Result<_, Cancelled>>()?;
     let mut done = 0;

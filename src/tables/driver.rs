@@ -169,6 +169,19 @@ fn bake_row(bound: &Bound, first: usize, row: Row<'_>, options: Options<'_>) -> 
     Ok(())
 }
 
+/// One texel of a table as [`bake`] makes it: with the others of its group.
+///
+/// # Errors
+/// Those of the texel.
+pub fn bake_again(bound: &Bound, texel: usize, tolerance: f64) -> Result<Estimate, TexelError> {
+    let (grid, group) = (&bound.spec.grid, bound.baker.group());
+    let first = texel - texel % group;
+    let points: Vec<Point> = (first..grid.len().min(first + group)).map(|t| grid.texel(t)).collect();
+    let at: Vec<&[f64]> = points.iter().map(Point::values).collect();
+    let mut made = bound.baker.texels(&at, tolerance);
+    made.swap_remove(texel - first)
+}
+
 /// The values at points that are no texels, in groups as texels are: none where an integral fails, and after a stop.
 pub fn at_points(
     bound: &Bound,

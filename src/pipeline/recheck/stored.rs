@@ -4,6 +4,7 @@ use crate::cancel::Cancel;
 use crate::encode::read::{Image, Plane, Sample};
 use crate::grid::provenance::AxisRecord;
 use crate::grid::{Provenance, Table};
+use crate::tables::driver::bake_again;
 use crate::tables::place;
 use crate::tables::spec::{Bound, Request, Spec};
 use crate::verify::Watch;
@@ -141,9 +142,8 @@ impl Stored {
         let one = |texel: &usize| {
             let mut watch = Watch::default();
             let at = || place(&self.table.grid, *texel);
-            let made = cancel.check().ok().and_then(|()| {
-                self.bound.baker.texel(self.table.grid.texel(*texel).values(), self.tolerance).ok()
-            });
+            let made =
+                cancel.check().ok().and_then(|()| bake_again(&self.bound, *texel, self.tolerance).ok());
             let judged = made.is_some();
             match made {
                 None => watch.miss(|| format!("no value at {}", at())),
