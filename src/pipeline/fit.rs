@@ -184,7 +184,7 @@ pub(super) fn fit(
         .into_iter()
         .zip(&places)
         .zip(values)
-        .filter_map(|((point, (_, area)), e)| Some((point, *area, e?.value)))
+        .filter_map(|((point, (_, area)), value)| Some((point, *area, value?)))
         .collect();
     cancel.check()?;
     let samples = Samples::new(grid, truth.iter().map(|(p, area, _)| (p, *area)));

@@ -161,11 +161,11 @@ fn fit(grid: &Grid, channels: u64) -> [u64; 2] {
     let points = bytes(super::fit::points(grid));
     let corners = 1_u64 << grid.axes().len();
     let truth = 56 + 8 * bytes(MAX_CHANNELS);
-    let reads = 2 * 16 * corners + 16;
+    let reads = 2 * 16 * corners + 24;
     let solution = 96 * channels;
     let texels = bytes(grid.len()).saturating_mul(112 * channels);
-    let fitting = points.saturating_mul(40 + 2 * truth + reads + solution).saturating_add(texels);
-    let kept = points.saturating_mul(truth + reads + 16 * channels).saturating_add(texels);
+    let fitting = points.saturating_mul(160 + 2 * truth + reads + solution).saturating_add(texels);
+    let kept = points.saturating_mul(truth + reads + 32 + 16 * channels).saturating_add(texels);
     [fitting, kept]
 }
 

@@ -8,7 +8,7 @@ use super::{Bound, TexelError};
 use crate::cancel::{Cancel, Cancelled};
 use crate::grid::Table;
 use crate::grid::layout::Point;
-use crate::integrate::Estimate;
+use crate::integrate::{Estimate, Sums};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -182,14 +182,15 @@ pub fn bake_again(bound: &Bound, texel: usize, tolerance: f64) -> Result<Estimat
     made.swap_remove(texel - first)
 }
 
-/// The values at points that are no texels, in groups as texels are: none where an integral fails, and after a stop.
+/// The values at points that are no texels, in groups as texels are, without their estimates: none where an integral fails, and after a
+/// stop.
 pub fn at_points(
     bound: &Bound,
     points: &[Point],
     tolerance: f64,
     cancel: &Cancel,
     done: &(dyn Fn(usize) + Sync),
-) -> Vec<Option<Estimate>> {
+) -> Vec<Option<Sums>> {
     let group = |part: &[Point]| {
         if cancel.is_set() {
             return vec![None; part.len()];
@@ -197,7 +198,7 @@ pub fn at_points(
         let at: Vec<&[f64]> = part.iter().map(Point::values).collect();
         let results = bound.baker.texels(&at, tolerance);
         done(part.len());
-        results.into_iter().map(Result::ok).collect()
+        results.into_iter().map(|e| e.ok().map(|e| e.value)).collect()
     };
     points.par_chunks(bound.baker.group()).flat_map_iter(group).collect()
 }

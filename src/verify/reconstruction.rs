@@ -12,7 +12,7 @@ use crate::grid::layout::{MAX_AXES, Point, combination};
 use crate::grid::provenance::{Reconstruction, Spread};
 use crate::grid::table::{Extreme, named};
 use crate::grid::{Grid, Texel, lookup};
-use crate::integrate::{Estimate, MAX_CHANNELS, Sums};
+use crate::integrate::{MAX_CHANNELS, Sums};
 use crate::tables::driver::at_points;
 use crate::tables::{Bound, ChannelInfo};
 use rayon::prelude::*;
@@ -154,8 +154,8 @@ impl<'a> Probe<'a> {
         let places: Vec<Point> = points.iter().map(|x| grid.at_coordinates(x)).collect();
         let done = |count: usize| (0..count).for_each(|_| steps.one());
         let values = at_points(self.bound, &places, self.tolerance, self.cancel, &done);
-        let fresh = |((x, point), e): ((&[f64; MAX_AXES], Point), Option<Estimate>)| {
-            let mut value = e?.value;
+        let fresh = |((x, point), value): ((&[f64; MAX_AXES], Point), Option<Sums>)| {
+            let mut value = value?;
             self.bound.baker.decode(point.values(), &mut value);
             Some(Fresh { x: *x, point, value })
         };
