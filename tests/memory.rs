@@ -5,6 +5,7 @@
 #![allow(clippy::print_stderr, reason = "what was skipped is said")]
 
 mod counted;
+mod hostile_pictures;
 mod sample;
 
 use brdfbake::cancel::Cancel;

@@ -7,6 +7,7 @@
 #![allow(clippy::float_cmp, reason = "factors are copied from the file, not computed: they must be equal")]
 
 mod bad;
+mod covered;
 mod judged;
 mod planned;
 mod spec_gloss;

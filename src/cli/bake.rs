@@ -7,6 +7,7 @@ use super::reuse::Reuse;
 use super::{Exit, Failure, engine, output, planned, scene, scene_write, suggest};
 use crate::cancel::Cancel;
 use crate::pipeline::pages::Collector;
+use crate::pipeline::suggest::Ranges;
 use crate::pipeline::write_scene::Bake;
 use crate::pipeline::{self, Companion, PipelineError, Settings};
 use crate::plan::Plan;
@@ -39,7 +40,7 @@ pub struct Args {
     #[arg(long, value_name = "ENGINE", conflicts_with = "recipe")]
     engine: Option<String>,
     /// Bake nothing: print the smallest table that the engine's shader could read to within this error, its recipe, and
-    /// the lines that read it. 1e-3 if no error is given.
+    /// the lines that read it. 1e-3 if no error is given. With `--scene` over the roughness that the scenes hold.
     #[arg(long, value_name = "ERROR", requires = "engine", conflicts_with_all = SUGGESTS_NOT, num_args = 0..=1, default_missing_value = "1e-3")]
     suggest: Option<f64>,
     /// Where the suggestion must hold: everywhere, or where mu >= 0.05 and roughness >= 0.09.
@@ -80,7 +81,7 @@ pub struct Args {
 /// What a suggestion does nothing with; `requires` is silent where what is required is refused.
 const SUGGESTS_NOT: [&str; 18] = [
     "recipe",
-    "scene",
+    "maps",
     "out",
     "write",
     "report",
@@ -126,16 +127,10 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     let scenes = scene::files(&args.scene)?;
     let mut written = scene_write::check(&args.write, &args.look, &scenes)?;
     let engine = args.engine.as_deref().map(engine::plan).transpose()?;
-    if let (Some((engine, plan)), Some(error)) = (&engine, args.suggest) {
-        return suggest::run(
-            engine,
-            plan,
-            error,
-            args.domain,
-            args.limits.jobs(),
-            args.message_format,
-            cancel,
-        );
+    let format = args.message_format;
+    let suggested = args.suggest.map(|error| suggest::Asked { error, domain: args.domain, format });
+    if let (Some((engine, plan)), Some(asked), true) = (&engine, suggested, scenes.is_empty()) {
+        return suggest::run(engine, plan, asked, &Ranges::new(), args.limits.jobs(), cancel);
     }
     let mut told = serde_json::json!({ "reason": "dry-run" });
     let (engine, plan) = if args.scene.is_empty() {
@@ -152,6 +147,9 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
             Format::Json => output::data(&scene::json(&job).to_string()).map(|_| ())?,
             Format::Human if args.quiet => {}
             Format::Human => scene::tell(&job),
+        }
+        if let (Some(engine), Some(asked)) = (entry, suggested) {
+            return suggest::run(engine, &job.plan, asked, &job.ranges(), args.limits.jobs(), cancel);
         }
         scene_write::serve(&mut written, &job, entry.is_some());
         if args.strict && job.in_doubt() {

@@ -4,8 +4,11 @@ use super::terminal::{Paint, paint};
 use super::{Exit, Failure, output};
 use crate::math::figures::short;
 use crate::pipeline::pool;
+use crate::pipeline::suggest::Ranges;
 use crate::plan::map::Kind;
-use crate::plan::scene::{self as planning, Asked, AskedMap, Kept, ScenePlanError, Survey, SurveyOptions};
+use crate::plan::scene::{
+    self as planning, Asked, AskedMap, Kept, ScenePlanError, Survey, SurveyOptions, Texels,
+};
 use crate::plan::{Plan, PlannedMap, PlannedTable};
 use crate::recipe::Engine;
 use crate::scene::{Fault, LeftOut, LeftOutKind, Need, Reader, SceneError};
@@ -31,6 +34,10 @@ pub struct Look {
     /// Tables go so far beyond the roughness of the scenes, on either side; 0 if not given.
     #[arg(long, value_name = "ROUGHNESS", value_parser = margin)]
     margin: Option<f64>,
+    /// Which texels of a texture count: `whole`, all of them; `referenced`, those that the meshes cover with their texture
+    /// coordinates. Where that is not known, all count and the plan says so.
+    #[arg(long, value_name = "WHICH", default_value = "whole", value_parser = texels)]
+    texels: Texels,
     /// Filter the normal and roughness textures of materials into maps with all levels, as KTX2; tables then cover the roughness of
     /// these levels. `normal`: fitted normals are written too; `anisotropy`: two widths and a direction.
     #[arg(long, value_name = "KIND", value_delimiter = ',', num_args = 0.., require_equals = true, default_missing_value = "roughness", value_parser = kind)]
@@ -44,7 +51,7 @@ impl Pictures {
     /// Root and limits, for a shader that takes roughness like this.
     pub(super) fn options(&self, reader: Reader) -> SurveyOptions {
         let pixels = self.pixels.unwrap_or(planning::PIXELS);
-        SurveyOptions { root: self.root.clone(), pixels, reader }
+        SurveyOptions { root: self.root.clone(), pixels, reader, ..SurveyOptions::default() }
     }
 }
 
@@ -55,6 +62,7 @@ impl Look {
             ("--root", self.pictures.root.is_some()),
             ("--pixels", self.pictures.pixels.is_some()),
             ("--margin", self.margin.is_some()),
+            ("--texels", self.texels != Texels::default()),
             ("--maps", !self.maps.is_empty()),
             ("--keep", self.keep.is_some()),
         ];
@@ -65,6 +73,11 @@ impl Look {
 fn margin(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| "it is no number".to_owned())?;
     if (0.0..=1.0).contains(&number) { Ok(number) } else { Err("it must be from 0 to 1".to_owned()) }
+}
+
+fn texels(text: &str) -> Result<Texels, String> {
+    let allowed = || format!("there is {}", Texels::ALL.map(Texels::id).join(", "));
+    Texels::ALL.into_iter().find(|t| t.id() == text).ok_or_else(allowed)
 }
 
 fn kind(text: &str) -> Result<Kind, String> {
@@ -96,6 +109,22 @@ impl Job {
     }
 }
 
+impl Job {
+    /// The roughness that each table is read at, over all that it serves.
+    pub(super) fn ranges(&self) -> Ranges {
+        let mut all = Ranges::new();
+        for table in &self.plan.tables {
+            let families: Vec<_> = planning::served(table).collect();
+            let served = self.survey.needs.needs.iter().filter(|n| families.contains(&n.table.as_ref()));
+            for range in served.filter_map(|n| n.ranges.get("roughness")) {
+                let ends = all.entry(table.name().to_owned()).or_insert([range.lo, range.hi]);
+                *ends = [ends[0].min(range.lo), ends[1].max(range.hi)];
+            }
+        }
+        all
+    }
+}
+
 /// Reads scenes, tells what they need, and plans the tables.
 pub(super) fn job(
     files: &[PathBuf],
@@ -110,7 +139,7 @@ pub(super) fn job(
         maps: !look.maps.is_empty(),
         margin: look.margin.unwrap_or(0.0),
     };
-    let options = look.pictures.options(reader);
+    let options = SurveyOptions { texels: look.texels, ..look.pictures.options(reader) };
     let mut kept = look.keep.as_deref().map_or_else(Kept::default, |folder| Kept::read(folder, &options));
     let found = pool(jobs)?.install(|| planning::survey_with(files, &options, &mut kept));
     let (mut survey, read) = found.map_err(|e| refused(&e))?;

@@ -1,11 +1,11 @@
-//! `bake --engine NAME --suggest`: prints what `pipeline::suggest` finds.
+//! `bake --engine NAME [--scene FILE] --suggest`: prints what `pipeline::suggest` finds.
 
 use super::progress::Format;
 use super::{Exit, Failure, output};
 use crate::cancel::Cancel;
 use crate::math::figures::exact;
 use crate::pipeline;
-use crate::pipeline::suggest::{self, Size, Suggestion, Want};
+use crate::pipeline::suggest::{self, Ranges, Size, Suggestion, Want};
 use crate::plan::Plan;
 use crate::recipe::Engine;
 
@@ -24,19 +24,27 @@ const LONGEST: usize = 256;
 /// Errors that can be asked for.
 const ERRORS: std::ops::RangeInclusive<f64> = 1e-7..=0.5;
 
-/// Runs it: exit code 4 if an error is out of reach for some table.
+/// What is asked for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Asked {
+    pub(super) error: f64,
+    pub(super) domain: Domain,
+    pub(super) format: Format,
+}
+
+/// Runs it, over the roughness that tables are read at: exit code 4 if an error is out of reach for some table.
 ///
 /// # Errors
 /// [`Failure`] for an error out of range, an interrupted run, or a table that cannot be baked.
 pub(super) fn run(
     engine: &Engine,
     plan: &Plan,
-    error: f64,
-    domain: Domain,
+    asked: Asked,
+    ranges: &Ranges,
     jobs: Option<usize>,
-    format: Format,
     cancel: &Cancel,
 ) -> Result<Exit, Failure> {
+    let Asked { error, domain, format } = asked;
     if !ERRORS.contains(&error) {
         return Err(Failure::usage(format!(
             "--suggest {} outside {} to {}",
@@ -47,7 +55,7 @@ pub(super) fn run(
     }
     let want = Want { error, practical: domain == Domain::Practical, longest: LONGEST };
     let pool = pipeline::pool(jobs)?;
-    let all = pool.install(|| suggest::suggest(engine, plan, want, cancel))?;
+    let all = pool.install(|| suggest::suggest_within(engine, plan, want, ranges, cancel))?;
     for suggestion in &all {
         output::data(&match format {
             Format::Json => json(suggestion),

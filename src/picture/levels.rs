@@ -1,7 +1,7 @@
 //! The codes that occur in each channel of an image, without planes of floats: as little memory as the decoder takes.
 
 use super::PictureError;
-use super::read::{Header, Samples, decode, named};
+use super::read::{Header, SLACK, Samples, decode, named};
 
 /// The codes of a channel, as numbers in [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,15 +19,46 @@ impl Levels {
     pub const ONE: Levels = Levels { lo: 1.0, hi: 1.0, count: 1 };
 }
 
-/// Bytes beside the picture: rows, tables, profiles.
-const SLACK: u64 = 32 << 20;
+/// The codes of a decoded image.
+#[derive(Debug)]
+pub struct Codes<'a> {
+    /// Width and height.
+    pub size: [usize; 2],
+    samples: &'a Samples,
+}
 
-/// The levels of R, G, B and A of a PNG, JPEG or WebP image; alpha is 1 where there is none, and grey is all three colours.
-/// `allow` is asked with the bytes that decoding takes before they are taken, and says how many there may be if it refuses.
+impl Codes<'_> {
+    /// The levels of R, G, B and A over the texels that count; alpha is 1 where there is none, and grey is all three colours.
+    #[must_use]
+    pub fn levels(&self, counts: impl Fn(usize) -> bool) -> [Levels; 4] {
+        let samples = self.samples;
+        let names = samples.names();
+        let find = |name: &str| names.iter().position(|n| *n == name);
+        ["R", "G", "B", "A"].map(|name| {
+            let grey = || if name == "A" { None } else { find("Y") };
+            find(name).or_else(grey).map_or(Levels::ONE, |channel| count(samples, channel, &counts))
+        })
+    }
+}
+
+/// The levels of R, G, B and A of a PNG, JPEG or WebP image. `allow` is asked with the bytes that decoding takes before they are
+/// taken, and says how many there may be if it refuses.
 ///
 /// # Errors
 /// [`PictureError::Unknown`] for another format, [`PictureError::Memory`] where `allow` refuses, [`PictureError::Damaged`].
 pub fn levels(bytes: &[u8], allow: impl FnOnce(u64) -> Result<(), u64>) -> Result<[Levels; 4], PictureError> {
+    codes(bytes, allow, |codes| codes.levels(|_| true))
+}
+
+/// As [`levels`], whatever is made of the codes.
+///
+/// # Errors
+/// As [`levels`].
+pub fn codes<T>(
+    bytes: &[u8],
+    allow: impl FnOnce(u64) -> Result<(), u64>,
+    make: impl FnOnce(&Codes<'_>) -> T,
+) -> Result<T, PictureError> {
     let is_webp = bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP");
     let ask = |header: &Header| {
         if let Err(limit) = allow(header.needed) {
@@ -36,25 +67,20 @@ pub fn levels(bytes: &[u8], allow: impl FnOnce(u64) -> Result<(), u64>) -> Resul
         }
         Ok(header.needed.saturating_add(SLACK))
     };
-    decode(bytes, named(bytes).or(is_webp.then_some("webp")), ask, |_, samples| count(samples))
+    decode(bytes, named(bytes).or(is_webp.then_some("webp")), ask, |header, samples| {
+        make(&Codes { size: [header.width as usize, header.height as usize], samples })
+    })
 }
 
-fn count(samples: &Samples) -> [Levels; 4] {
+/// The levels of a channel.
+fn count(samples: &Samples, channel: usize, counts: &impl Fn(usize) -> bool) -> Levels {
     let most = if samples.are_wide() { 65535_u16 } else { 255 };
-    let of = |channel: usize| {
-        let mut seen = vec![false; usize::from(most) + 1];
-        for code in samples.codes(channel) {
-            seen[usize::from(code)] = true;
-        }
-        let occur = || (0..=most).zip(&seen).filter(|(_, seen)| **seen).map(|(code, _)| code);
-        let [lo, hi] =
-            [occur().next(), occur().next_back()].map(|code| f64::from(code.unwrap_or(0)) / f64::from(most));
-        Levels { lo, hi, count: u32::try_from(occur().count()).unwrap_or(u32::MAX) }
-    };
-    let names = samples.names();
-    let find = |name: &str| names.iter().position(|n| *n == name);
-    ["R", "G", "B", "A"].map(|name| {
-        let grey = || if name == "A" { None } else { find("Y") };
-        find(name).or_else(grey).map_or(Levels::ONE, of)
-    })
+    let mut seen = vec![false; usize::from(most) + 1];
+    for (_, code) in samples.codes(channel).enumerate().filter(|(i, _)| counts(*i)) {
+        seen[usize::from(code)] = true;
+    }
+    let occur = || (0..=most).zip(&seen).filter(|(_, seen)| **seen).map(|(code, _)| code);
+    let [lo, hi] =
+        [occur().next(), occur().next_back()].map(|code| f64::from(code.unwrap_or(0)) / f64::from(most));
+    Levels { lo, hi, count: u32::try_from(occur().count()).unwrap_or(u32::MAX) }
 }

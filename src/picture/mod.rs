@@ -4,13 +4,16 @@
 //! asked for. Palettes, interlacing and one-bit greys are unfolded by the decoder. Files are not trusted: sizes are checked
 //! before memory is asked for ([`MAX_PIXELS`]), and what is damaged is an error.
 
+mod covered;
+mod jpeg;
 mod levels;
 mod pyramid;
 mod read;
 mod resample;
 mod write;
 
-pub use levels::{Levels, levels};
+pub use covered::{CoverError, Covered};
+pub use levels::{Codes, Levels, codes, levels};
 pub use pyramid::{Coverage, count_levels, halved, shrink};
 pub(crate) use read::Samples;
 pub use read::{MAGIC, facts, read_bytes, read_within};

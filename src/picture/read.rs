@@ -1,5 +1,6 @@
 //! PNG and JPEG, and WebP for its levels. The other containers are read by `encode`.
 
+use super::jpeg;
 use super::{MAX_PIXELS, Picture, PictureError, Plane};
 use image::codecs::jpeg::JpegDecoder;
 use image::codecs::png::PngDecoder;
@@ -13,8 +14,18 @@ pub const MAGIC: [(&[u8], &str); 2] = [(b"\x89PNG\r\n\x1a\n", "png"), (b"\xff\xd
 /// Most bytes that a decoder may take for rows, text and profiles.
 const MAX_ALLOC: u64 = 1 << 31;
 
-/// Bytes of memory for each pixel that JPEG and WebP take at most: coefficients of three components, and the picture.
-const BYTES_A_PIXEL: u64 = 9;
+/// Bytes beside the picture: rows, tables, text, profiles.
+pub(super) const SLACK: u64 = 32 << 20;
+
+/// A decoder whose rows, text and profiles take no more than [`SLACK`], from its first chunk on.
+fn png(file: Cursor<&[u8]>) -> image::ImageResult<PngDecoder<Cursor<&[u8]>>> {
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(SLACK);
+    PngDecoder::with_limits(file, limits)
+}
+
+/// Bytes of memory for each pixel that WebP takes at most.
+const WEBP: f64 = 9.0;
 
 /// Reads a PNG or JPEG image from memory. Profiles and gamma are left alone: samples are codes as they stand.
 ///
@@ -58,7 +69,7 @@ pub fn facts(bytes: &[u8]) -> Result<([usize; 2], Vec<String>), PictureError> {
     let all = std::panic::AssertUnwindSafe(|| {
         let file = Cursor::new(bytes);
         match format {
-            "png" => PngDecoder::new(file).map(|d| of(&d)),
+            "png" => png(file).map(|d| of(&d)),
             _ => JpegDecoder::new(file).map(|d| of(&d)),
         }
     });
@@ -128,24 +139,30 @@ pub(super) fn decode<T>(
     let all = std::panic::AssertUnwindSafe(|| {
         let file = Cursor::new(bytes);
         let (header, samples) = match format {
-            "png" => unpack(PngDecoder::new(file).map_err(library)?, format, 0, allow)?,
-            "webp" => unpack(WebPDecoder::new(file).map_err(library)?, format, BYTES_A_PIXEL, allow)?,
-            _ => unpack(JpegDecoder::new(file).map_err(library)?, format, BYTES_A_PIXEL, allow)?,
+            "png" => unpack(png(file).map_err(library)?, format, 0.0, allow)?,
+            "webp" => unpack(WebPDecoder::new(file).map_err(library)?, format, WEBP, allow)?,
+            _ => {
+                let frame = jpeg::frame(bytes).map_err(|fault| damaged(fault.to_owned()))?;
+                // the picture, and coefficients of 16 bits
+                let a_pixel = f64::from(frame.components) + 2.0 * frame.kept;
+                unpack(JpegDecoder::new(file).map_err(library)?, format, a_pixel, allow)?
+            }
         };
         Ok(make(&header, &samples))
     });
     std::panic::catch_unwind(all).unwrap_or_else(|_| Err(damaged("the decoder gave up".to_owned())))
 }
 
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, and below 2^36")]
 fn unpack(
     mut decoder: impl ImageDecoder,
     format: &'static str,
-    bytes_a_pixel: u64,
+    bytes_a_pixel: f64,
     allow: impl FnOnce(&Header) -> Result<u64, PictureError>,
 ) -> Result<(Header, Samples), PictureError> {
     let (width, height) = decoder.dimensions();
     let pixels = u64::from(width).saturating_mul(u64::from(height));
-    let needed = decoder.total_bytes().max(pixels.saturating_mul(bytes_a_pixel));
+    let needed = decoder.total_bytes().max((pixels as f64 * bytes_a_pixel) as u64);
     let size = usize::try_from(pixels).ok().filter(|n| *n > 0 && usize::try_from(needed).is_ok());
     let Some(size) = size else {
         return Err(PictureError::Pixels { width: width as usize, height: height as usize });
@@ -160,6 +177,7 @@ fn unpack(
 }
 
 /// A decoded image: codes of 8 or 16 bits, all channels of a pixel together. Greys of fewer bits and palettes are unfolded to 8.
+#[derive(Debug)]
 pub(crate) struct Samples {
     channels: usize,
     /// Bytes of a sample.

@@ -1,7 +1,7 @@
 //! Planes of another size.
 
 /// What lies beyond the border, as samplers of glTF name it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Wrap {
     /// The image again.
     Repeat,

@@ -18,6 +18,7 @@ use crate::tables::ModelUse;
 use crate::tables::default_axes::LEAST_ROUGHNESS;
 use crate::tables::spec::Request;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// Part of the error that integration may have.
 const SHARE: f64 = 0.02;
@@ -93,7 +94,32 @@ pub fn suggest(
     want: Want,
     cancel: &Cancel,
 ) -> Result<Vec<Suggestion>, PipelineError> {
-    plan.tables.iter().enumerate().map(|(i, planned)| one(engine, plan, planned, i, want, cancel)).collect()
+    suggest_within(engine, plan, want, &Ranges::new(), cancel)
+}
+
+/// The perceptual roughness that tables are read at, by their names.
+pub type Ranges = BTreeMap<String, [f64; 2]>;
+
+/// As [`suggest`], of tables that are read over a part of their roughness only: what a scene holds.
+///
+/// # Errors
+/// As [`suggest`].
+pub fn suggest_within(
+    engine: &Engine,
+    plan: &Plan,
+    want: Want,
+    ranges: &Ranges,
+    cancel: &Cancel,
+) -> Result<Vec<Suggestion>, PipelineError> {
+    let one = |(i, planned): (usize, &PlannedTable)| {
+        let range = ranges.get(planned.name()).copied();
+        let mut found = one(engine, plan, planned, i, Search { planned, want, range, language: "", cancel })?;
+        if let (Some([lo, hi]), Some(_)) = (range, &found.found) {
+            found.notes.push(format!("it covers what is read at roughness [{lo}, {hi}], and clamps beyond"));
+        }
+        Ok(found)
+    };
+    plan.tables.iter().enumerate().map(one).collect()
 }
 
 fn one(
@@ -101,9 +127,9 @@ fn one(
     plan: &Plan,
     planned: &PlannedTable,
     index: usize,
-    want: Want,
-    cancel: &Cancel,
+    search: Search<'_>,
 ) -> Result<Suggestion, PipelineError> {
+    let Search { want, cancel, .. } = search;
     let mut result =
         Suggestion { table: planned.name().to_owned(), own: None, found: None, notes: Vec::new() };
     let language = match (engine.reader, planned.bound.spec.kind.id) {
@@ -119,7 +145,7 @@ fn one(
     };
     let own = table::make(plan, planned, index, false, false, cancel, &Silent)?;
     result.own = measured(&own, planned);
-    let search = Search { planned, want, language, cancel };
+    let search = Search { language, ..search };
     let output = planned.outputs.first().cloned().unwrap_or_else(Output::preset);
     let mut least = Reached::default();
     result.found = search.best(&output, &mut least)?;
@@ -136,7 +162,9 @@ fn one(
             "no table with axes up to {longest} reads to within {error:e} over the {domain} domain; {least}"
         ));
     } else {
-        result.notes.push(format!("roughness below {LEAST_ROUGHNESS} reads as {LEAST_ROUGHNESS}"));
+        if search.range.is_none() {
+            result.notes.push(format!("roughness below {LEAST_ROUGHNESS} reads as {LEAST_ROUGHNESS}"));
+        }
     }
     if let Some((own, found)) = result.own.as_ref().zip(result.found.as_ref())
         && found.size.bytes > own.bytes
@@ -146,9 +174,12 @@ fn one(
     Ok(result)
 }
 
+#[derive(Clone, Copy)]
 struct Search<'a> {
     planned: &'a PlannedTable,
     want: Want,
+    /// The roughness that it is read at, if that is a part.
+    range: Option<[f64; 2]>,
     language: &'static str,
     cancel: &'a Cancel,
 }
@@ -183,7 +214,8 @@ impl Search<'_> {
             longest: self.want.longest,
             axes: vec![0, 1],
         };
-        let mut request = TableRequest::new(self.planned.name().to_owned(), request(self.planned, channels));
+        let mut request =
+            TableRequest::new(self.planned.name().to_owned(), request(self.planned, channels, self.range));
         request.outputs = Some(vec![output.clone()]);
         request.tolerance = Some((SHARE * self.want.error).max(1e-12));
         let open = TableRequest { size: Some(sizing.clone()), ..request.clone() };
@@ -235,9 +267,9 @@ fn candidates(planned: &PlannedTable, output: &Output) -> Vec<(Vec<String>, Deco
 }
 
 /// The same integrals over the same quantities, on plain axes.
-fn request(planned: &PlannedTable, channels: Vec<String>) -> Request {
+fn request(planned: &PlannedTable, channels: Vec<String>, range: Option<[f64; 2]>) -> Request {
     let spec = &planned.bound.spec;
-    let axes = spec.grid.axes().iter().map(plain).collect();
+    let axes = spec.grid.axes().iter().map(|axis| plain(axis, range)).collect();
     let mut params = spec.params.to_json(&spec.swept());
     let model = spec.model.as_ref().map(|(info, given)| {
         let defaults = Params::resolve(info.id, info.params, []).map(|p| p.to_json(&[])).unwrap_or_default();
@@ -260,7 +292,11 @@ fn request(planned: &PlannedTable, channels: Vec<String>) -> Request {
     }
 }
 
-fn plain(axis: &Axis) -> Axis {
+/// Where one roughness is read, the axis keeps so much on either side: two rows.
+const BESIDE: f64 = 0.005;
+
+/// The axis without warp, from the least roughness on or over a range of it.
+fn plain(axis: &Axis, range: Option<[f64; 2]>) -> Axis {
     let mut plain = axis.clone();
     plain.warp = Warp::Linear;
     plain.texel = Texel::Endpoint;
@@ -272,6 +308,16 @@ fn plain(axis: &Axis) -> Axis {
         _ => axis.domain[0],
     };
     plain.domain[0] = plain.domain[0].max(least);
+    if let Some([lo, hi]) = range {
+        let (lo, hi) = (lo.clamp(LEAST_ROUGHNESS, 1.0), hi.clamp(LEAST_ROUGHNESS, 1.0));
+        let beside = if hi - lo < 2.0 * BESIDE { BESIDE } else { 0.0 };
+        let ends = [(lo - beside).max(LEAST_ROUGHNESS), (hi + beside).min(1.0)];
+        match axis.quantity.id {
+            "roughness" => plain.domain = ends,
+            "alpha" => plain.domain = ends.map(|r| r * r),
+            _ => {}
+        }
+    }
     plain
 }
 

@@ -207,6 +207,13 @@ impl Collector {
                 self.leave(LeftOutKind::Unknown, &what, &why, Some(by.clone()));
             }
         }
+        let uncovered: BTreeSet<_> =
+            material.sampled(false).filter_map(|s| look.uncovered(s).map(|why| (s.image, why))).collect();
+        for (image, why) in uncovered {
+            let what = image.map_or_else(|| "texture".to_owned(), |i| format!("images[{i}]"));
+            let why = format!("what the mesh covers is not known, so the whole image counts: {why}");
+            self.leave(LeftOutKind::Unknown, &what, &why, Some(by.clone()));
+        }
         self.answer("base layer", base, &by, &named);
         for (extension, said) in layers {
             self.extension(extension, said, &by, look);

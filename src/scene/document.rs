@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::embedded;
 use super::error::Fault;
+use super::geometry::{self, Geometry};
 use super::json::Node;
 use super::material::{self, Animated, Material, Tables};
 use super::uri::{Checked, check_uri};
@@ -18,7 +19,7 @@ pub(super) fn scene(tree: &Value, bin: Option<&[u8]>, limits: &Limits) -> Result
     check_versions(&root)?;
     let count = |key| root.get(key)?.map_or(Ok(0), |section| section.len());
     let textures = embedded::textures(&root)?;
-    let counts = Tables { materials: count("materials")?, textures: &textures };
+    let counts = Tables { materials: count("materials")?, textures: &textures, texels: limits.texels };
     let animated = animated(&root, counts)?;
     let mut materials = Vec::with_capacity(counts.materials);
     if let Some(section) = root.get("materials")? {
@@ -41,6 +42,7 @@ pub(super) fn scene(tree: &Value, bin: Option<&[u8]>, limits: &Limits) -> Result
         extensions_required: names(&root, "extensionsRequired")?,
         external_files: external_files(&root, limits)?,
         images: Vec::new(),
+        geometry: Geometry::default(),
         warnings: Vec::new(),
     };
     scene.warnings = declaration_warnings(&scene);
@@ -52,6 +54,9 @@ pub(super) fn scene(tree: &Value, bin: Option<&[u8]>, limits: &Limits) -> Result
         shaded.flat_map(|m| m.sampled(limits.colours)).filter_map(|s| s.image).collect()
     };
     scene.images = embedded::images(&root, &wanted, bin, limits)?;
+    if limits.texels {
+        scene.geometry = geometry::read(&root, &scene.materials, bin, limits)?;
+    }
     Ok(scene)
 }
 

@@ -19,19 +19,24 @@ const SOURCES: [&str; 4] = ["EXT_texture_webp", "KHR_texture_basisu", "EXT_textu
 pub(super) struct Texture {
     pub(super) image: Option<usize>,
     pub(super) wrap: [Wrap; 2],
+    /// Does its sampler mix texels? One that says nothing is taken to.
+    pub(super) linear: bool,
 }
 
 impl Default for Texture {
     fn default() -> Texture {
-        Texture { image: None, wrap: [Wrap::Repeat; 2] }
+        Texture { image: None, wrap: [Wrap::Repeat; 2], linear: true }
     }
 }
 
 /// Modes of a sampler, as OpenGL numbers them.
 const MODES: [(u64, Wrap); 3] = [(10497, Wrap::Repeat), (33071, Wrap::Clamp), (33648, Wrap::Mirror)];
 
-/// The wrap modes of each sampler.
-fn samplers(root: &Node<'_>) -> Result<Vec<[Wrap; 2]>, Fault> {
+/// Filters that read the nearest texel only, as OpenGL numbers them: of the picture, and of one of its levels.
+const NEAREST: [u64; 3] = [9728, 9984, 9986];
+
+/// The wrap modes of each sampler, and whether it mixes texels.
+fn samplers(root: &Node<'_>) -> Result<Vec<([Wrap; 2], bool)>, Fault> {
     let Some(list) = root.get("samplers")? else { return Ok(Vec::new()) };
     let mut all = Vec::with_capacity(list.len()?);
     for sampler in list.items()? {
@@ -39,7 +44,11 @@ fn samplers(root: &Node<'_>) -> Result<Vec<[Wrap; 2]>, Fault> {
             let mode = sampler.get(key)?.map_or(Ok(10497), |mode| mode.whole())?;
             Ok(MODES.iter().find(|(m, _)| *m == mode).map_or(Wrap::Repeat, |(_, wrap)| *wrap))
         };
-        all.push([mode("wrapS")?, mode("wrapT")?]);
+        let nearest = |key: &'static str| -> Result<bool, Fault> {
+            Ok(sampler.get(key)?.map(|f| f.whole()).transpose()?.is_some_and(|f| NEAREST.contains(&f)))
+        };
+        let linear = !(nearest("magFilter")? && nearest("minFilter")?);
+        all.push(([mode("wrapS")?, mode("wrapT")?], linear));
     }
     Ok(all)
 }
@@ -62,8 +71,9 @@ pub(super) fn textures(root: &Node<'_>) -> Result<Vec<Texture>, Fault> {
             }
         }
         let sampler = texture.get("sampler")?.map(|s| s.index("samplers", samplers.len())).transpose()?;
-        let wrap = sampler.and_then(|s| samplers.get(s)).copied().unwrap_or([Wrap::Repeat; 2]);
-        all.push(Texture { image, wrap });
+        let (wrap, linear) =
+            sampler.and_then(|s| samplers.get(s)).copied().unwrap_or(([Wrap::Repeat; 2], true));
+        all.push(Texture { image, wrap, linear });
     }
     Ok(all)
 }
@@ -88,7 +98,7 @@ pub(super) fn images(
     Ok(all)
 }
 
-fn at_uri(uri: &Node<'_>, part: Option<[u64; 2]>, limits: &Limits) -> Result<Source, Fault> {
+pub(super) fn at_uri(uri: &Node<'_>, part: Option<[u64; 2]>, limits: &Limits) -> Result<Source, Fault> {
     let text = uri.text()?;
     let fault = |source| Fault::Uri { at: uri.path(), uri: crate::math::shown::show(text), source };
     match check_uri(text, limits.data_uri_bytes).map_err(fault)? {

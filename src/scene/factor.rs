@@ -1,5 +1,6 @@
 //! A number of a material: what the file says, what multiplies it, and the values that it can take.
 
+use super::geometry::Reading;
 use super::image::Look;
 use super::json::Allowed;
 use std::fmt;
@@ -13,6 +14,8 @@ pub enum Spread {
     Texture,
     /// A texture that was read, with so many different codes.
     Texels(u32),
+    /// A texture that was read where a mesh covers it, with so many different codes there.
+    Covered(u32),
     /// An animation (`KHR_animation_pointer`).
     Animation,
     /// The levels of filtered maps.
@@ -68,6 +71,10 @@ impl fmt::Display for Interval {
             Spread::Texture => write!(f, "[{}, {}] (texture)", self.lo, self.hi),
             Spread::Texels(1) => write!(f, "{} (texture of one level)", self.lo),
             Spread::Texels(n) => write!(f, "[{}, {}] (texture of {n} levels)", self.lo, self.hi),
+            Spread::Covered(1) => write!(f, "{} (texture of one level where the mesh covers it)", self.lo),
+            Spread::Covered(n) => {
+                write!(f, "[{}, {}] (texture of {n} levels where the mesh covers it)", self.lo, self.hi)
+            }
             Spread::Maps => write!(f, "[{}, {}] (levels of filtered maps)", self.lo, self.hi),
             Spread::Animation => write!(f, "[{}, {}] (animation)", self.lo, self.hi),
         }
@@ -81,6 +88,8 @@ pub struct Sampled {
     pub image: Option<usize>,
     /// Which of R, G, B, A.
     pub channel: Channel,
+    /// How its material reads it; none if it is not asked which texels a mesh covers.
+    pub reading: Option<Reading>,
 }
 
 /// A channel of a texture.
@@ -172,7 +181,9 @@ impl Property {
         let Some(texture) = self.texture else { return Interval { lo, hi, spread: Spread::Constant } };
         match look.levels(texture).filter(|_| !self.colour) {
             Some(levels) => {
-                Interval { lo: lo * levels.lo, hi: hi * levels.hi, spread: Spread::Texels(levels.count) }
+                let covered = look.covered(texture).is_some();
+                let spread = if covered { Spread::Covered } else { Spread::Texels };
+                Interval { lo: lo * levels.lo, hi: hi * levels.hi, spread: spread(levels.count) }
             }
             None => Interval { lo: 0.0, hi, spread: Spread::Texture },
         }

@@ -1,6 +1,7 @@
 //! The images of a scene: where they lie, and what was found in them. They are decoded by whoever plans.
 
 use super::factor::{Channel, Sampled};
+use super::geometry::Reading;
 use crate::picture::Levels;
 use std::collections::BTreeMap;
 
@@ -35,6 +36,7 @@ pub struct Image {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Look {
     found: BTreeMap<usize, Result<[Levels; 4], String>>,
+    covered: BTreeMap<(usize, Reading), Result<[Levels; 4], String>>,
 }
 
 impl Look {
@@ -49,10 +51,27 @@ impl Look {
         self.found.insert(image, found);
     }
 
-    /// The levels of a channel, if its image was read.
+    /// Notes the levels of an image over the texels that a material reads, or why these are not known.
+    pub fn cover(&mut self, image: usize, reading: Reading, found: Result<[Levels; 4], String>) {
+        self.covered.insert((image, reading), found);
+    }
+
+    /// The levels of the texels that are read, if it was asked and is known which these are.
+    pub(super) fn covered(&self, sampled: Sampled) -> Option<&[Levels; 4]> {
+        self.covered.get(&(sampled.image?, sampled.reading?))?.as_ref().ok()
+    }
+
+    /// Why it is not known which texels of an image that was read are covered, if that was asked.
+    #[must_use]
+    pub fn uncovered(&self, sampled: Sampled) -> Option<&str> {
+        self.covered.get(&(sampled.image?, sampled.reading?))?.as_ref().err().map(String::as_str)
+    }
+
+    /// The levels of a channel, if its image was read: of the texels that are covered where that is known, else of all.
     #[must_use]
     pub fn levels(&self, sampled: Sampled) -> Option<Levels> {
-        let all = self.found.get(&sampled.image?)?.as_ref().ok()?;
+        let whole = || self.found.get(&sampled.image?)?.as_ref().ok();
+        let all = self.covered(sampled).or_else(whole)?;
         let place = match sampled.channel {
             Channel::R => 0,
             Channel::G => 1,

@@ -137,6 +137,12 @@ impl<'a> Node<'a> {
         Ok(array.iter().enumerate().map(|(i, value)| self.child(Step::Index(i), value)))
     }
 
+    /// An element of this array.
+    pub(super) fn item(&'a self, i: usize) -> Result<Option<Node<'a>>, Fault> {
+        let array = self.value.as_array().ok_or_else(|| self.wrong("an array"))?;
+        Ok(array.get(i).map(|value| self.child(Step::Index(i), value)))
+    }
+
     /// The number of elements of this array.
     pub(super) fn len(&self) -> Result<usize, Fault> {
         self.value.as_array().map(Vec::len).ok_or_else(|| self.wrong("an array"))
@@ -168,6 +174,11 @@ impl<'a> Node<'a> {
     /// This value as a whole number.
     pub(super) fn whole(&self) -> Result<u64, Fault> {
         self.value.as_u64().ok_or_else(|| self.wrong("an integer of at least 0"))
+    }
+
+    /// This value as a flag.
+    pub(super) fn flag(&self) -> Result<bool, Fault> {
+        self.value.as_bool().ok_or_else(|| self.wrong("true or false"))
     }
 
     /// A number member in a range, or its default.

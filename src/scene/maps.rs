@@ -42,7 +42,7 @@ impl Default for Maps {
 /// A number of either sign.
 const ANY: Allowed = Allowed { lo: f64::MIN, hi: f64::MAX, also: None, text: "any number" };
 
-const TRANSFORM: &str = "KHR_texture_transform";
+pub(super) const TRANSFORM: &str = "KHR_texture_transform";
 
 /// Reads them.
 pub(super) fn read(node: &Node<'_>, textures: &[Texture], animated: &Animated) -> Result<Maps, Fault> {
@@ -61,7 +61,13 @@ pub(super) fn read(node: &Node<'_>, textures: &[Texture], animated: &Animated) -
 
 fn texture(info: &Node<'_>, textures: &[Texture]) -> Result<MapTexture, Fault> {
     let index = info.need("index", "the index of a texture")?.index("textures", textures.len())?;
-    let Texture { image, wrap } = textures.get(index).copied().unwrap_or_default();
+    let Texture { image, wrap, .. } = textures.get(index).copied().unwrap_or_default();
+    let (tex_coord, transform) = placed(info)?;
+    Ok(MapTexture { image, tex_coord, transform, wrap })
+}
+
+/// The UV set of a texture, and offset, rotation and scale of its `KHR_texture_transform`.
+pub(super) fn placed(info: &Node<'_>) -> Result<(u64, [f64; 5]), Fault> {
     let mut tex_coord = info.get("texCoord")?.map_or(Ok(0), |set| set.whole())?;
     let mut transform = [0.0, 0.0, 0.0, 1.0, 1.0];
     if let Some(extensions) = info.get("extensions")?
@@ -76,7 +82,7 @@ fn texture(info: &Node<'_>, textures: &[Texture]) -> Result<MapTexture, Fault> {
             }
         }
     }
-    Ok(MapTexture { image, tex_coord, transform, wrap })
+    Ok((tex_coord, transform))
 }
 
 impl Material {

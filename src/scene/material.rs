@@ -8,9 +8,10 @@ use super::embedded::Texture;
 use super::error::Fault;
 use super::extension::{self, Asks, Switch};
 use super::factor::{Channel, Factor, Interval, Property, Sampled};
+use super::geometry::Reading;
 use super::image::Look;
 use super::json::{Allowed, Node, UNIT};
-use super::maps::{self, Maps};
+use super::maps::{self, Maps, TRANSFORM};
 
 /// Whether an extension of a material does anything there, with the factor that says so.
 #[derive(Debug, Clone, PartialEq)]
@@ -119,6 +120,12 @@ impl Material {
         self.asks(|asks| matches!(asks, Asks::Unlit))
     }
 
+    /// Does another material model take the place of glTF's?
+    #[must_use]
+    pub fn is_replaced(&self) -> bool {
+        self.asks(|asks| matches!(asks, Asks::Replaced(_)))
+    }
+
     /// The values of a number of an extension, or of the base layer if `extension` is empty; the default where the extension is not there.
     #[must_use]
     pub fn range(&self, extension: &str, key: &str, look: &Look) -> Interval {
@@ -161,6 +168,16 @@ pub(super) struct Tables<'a> {
     pub(super) materials: usize,
     /// The image of each texture.
     pub(super) textures: &'a [Texture],
+    /// Is it asked which texels are read?
+    pub(super) texels: bool,
+}
+
+/// The material whose textures are read.
+#[derive(Clone, Copy)]
+struct Owner<'a> {
+    index: usize,
+    tables: Tables<'a>,
+    animated: &'a Animated,
 }
 
 /// Reads `materials[index]`. It is not marked as used.
@@ -182,17 +199,18 @@ pub(super) fn read(
         lods: Vec::new(),
         maps: maps::read(node, tables.textures, animated)?,
     };
+    let owner = Owner { index, tables, animated };
     // The two extensions that pack roughness into another texture replace the core texture.
     let mut packed = None;
     if let Some(extensions) = node.get("extensions")? {
         for (name, extension) in extensions.members()? {
             let known = extension::find(name);
+            let prefix = format!("extensions/{name}");
             if matches!(known.map(|x| &x.asks), Some(Asks::RoughnessTexture)) {
-                packed = Some(read_packed(&extension, tables)?);
+                packed = Some(read_packed(&extension, &prefix, owner)?);
             }
             let factors = known.map_or(&[][..], |x| x.factors);
-            let prefix = format!("extensions/{name}");
-            let properties = read_factors(&extension, factors, &prefix, tables, animated)?;
+            let properties = read_factors(&extension, factors, &prefix, owner)?;
             material.extensions.push(MaterialExtension { name: name.to_owned(), properties });
             if name == "MSFT_lod" {
                 for id in extension.need("ids", "an array of material indices")?.items()? {
@@ -204,7 +222,7 @@ pub(super) fn read(
     material.core = match node.get("pbrMetallicRoughness")? {
         Some(pbr) => {
             material.metallic_roughness = true;
-            read_factors(&pbr, CORE, "pbrMetallicRoughness", tables, animated)?
+            read_factors(&pbr, CORE, "pbrMetallicRoughness", owner)?
         }
         None => CORE.iter().map(default).collect(),
     };
@@ -232,21 +250,20 @@ fn reach(allowed: &Allowed) -> [f64; 2] {
 }
 
 /// The textures of roughness and metalness of an `MSFT_packing_*` extension.
-fn read_packed(node: &Node<'_>, tables: Tables<'_>) -> Result<[Sampled; 2], Fault> {
+fn read_packed(node: &Node<'_>, prefix: &str, owner: Owner<'_>) -> Result<[Sampled; 2], Fault> {
     for (key, channels) in PACKED {
-        if let Some(image) = texture(node, key, tables)? {
-            return Ok(channels.map(|channel| Sampled { image, channel }));
+        if let Some((image, reading)) = texture(node, key, prefix, owner)? {
+            return Ok(channels.map(|channel| Sampled { image, channel, reading }));
         }
     }
-    Ok([Channel::G, Channel::B].map(|channel| Sampled { image: None, channel }))
+    Ok([Channel::G, Channel::B].map(|channel| Sampled { image: None, channel, reading: None }))
 }
 
 fn read_factors(
     node: &Node<'_>,
     factors: &'static [Factor],
     prefix: &str,
-    tables: Tables<'_>,
-    animated: &Animated,
+    owner: Owner<'_>,
 ) -> Result<Vec<Property>, Fault> {
     let mut all = Vec::with_capacity(factors.len());
     for factor in factors {
@@ -263,17 +280,31 @@ fn read_factors(
         let ends = if factor.channels > 1 { ends } else { [values[0]; 2] };
         let mut sampled = None;
         if let Some((key, channel)) = factor.texture {
-            sampled = texture(node, key, tables)?.map(|image| Sampled { image, channel });
+            let found = texture(node, key, prefix, owner)?;
+            sampled = found.map(|(image, reading)| Sampled { image, channel, reading });
         }
-        let animated = animated.contains(&format!("{prefix}/{}", factor.key));
+        let animated = owner.animated.contains(&format!("{prefix}/{}", factor.key));
         all.push(Property { factor: ends, values, texture: sampled, animated, ..default(factor) });
     }
     Ok(all)
 }
 
+/// An image, and how it is read.
+type Found = (Option<usize>, Option<Reading>);
+
 /// The image of a `textureInfo`, if that is there. Its index is checked.
-fn texture(node: &Node<'_>, key: &str, tables: Tables<'_>) -> Result<Option<Option<usize>>, Fault> {
+fn texture(node: &Node<'_>, key: &str, prefix: &str, owner: Owner<'_>) -> Result<Option<Found>, Fault> {
     let Some(info) = node.get(key)? else { return Ok(None) };
-    let index = info.need("index", "the index of a texture")?.index("textures", tables.textures.len())?;
-    Ok(Some(tables.textures.get(index).and_then(|t| t.image)))
+    let textures = owner.tables.textures;
+    let index = info.need("index", "the index of a texture")?.index("textures", textures.len())?;
+    let texture = textures.get(index).copied().unwrap_or_default();
+    let reading = match texture.image {
+        Some(_) if owner.tables.texels => {
+            let path = format!("{prefix}/{key}/extensions/{TRANSFORM}");
+            let moves = owner.animated.iter().any(|p| p.starts_with(&path));
+            Some(Reading::new(owner.index, &info, texture, moves)?)
+        }
+        _ => None,
+    };
+    Ok(Some((texture.image, reading)))
 }

@@ -3,7 +3,8 @@
 //! [`read`] takes a `.glb` or `.gltf` file and keeps the factors that decide which tables its materials ask for.
 //! [`analyse`] and [`analyse_with`] turn them into [`Needs`]: the tables to bake, who asks and why, and all that was left out.
 //! Geometry is never loaded and no URI of the file is opened here: [`Scene::images`] says where the images lie whose levels
-//! matter, and whoever reads them tells what is in them by a [`Look`].
+//! matter, [`Scene::geometry`] where the texture coordinates are that read them, and whoever reads them tells what is in them by
+//! a [`Look`].
 //!
 //! # Trust
 //! The file may be hostile. Sizes are bounded before anything is allocated ([`Limits`]); JSON nests at most
@@ -25,6 +26,7 @@ mod embedded;
 mod error;
 mod extension;
 mod factor;
+mod geometry;
 mod glb;
 mod image;
 mod json;
@@ -51,6 +53,7 @@ pub use extension::{
     SHEEN, SUBSURFACE, Switch, find as find_extension,
 };
 pub use factor::{Channel, Factor, Interval, Property, Sampled, Spread};
+pub use geometry::{Accessor, Component, Geometry, Primitive, Reading, Sparse, View};
 pub use image::{Image, Look, Source};
 pub use json::{ASYMMETRY, Allowed, IOR, NOT_NEGATIVE, UNIT};
 pub use maps::{MapTexture, Maps};
@@ -75,6 +78,8 @@ pub struct Limits {
     pub colours: bool,
     /// List the images of normals and roughness that filtered maps are made of, in place of those that factors are multiplied by.
     pub maps: bool,
+    /// Keep in [`Scene::geometry`] where the texture coordinates lie, so that it can be told which texels the meshes cover. Default false.
+    pub texels: bool,
 }
 
 impl Default for Limits {
@@ -87,6 +92,7 @@ impl Default for Limits {
             data_uri_bytes: 128 * MIB,
             colours: false,
             maps: false,
+            texels: false,
         }
     }
 }
@@ -170,8 +176,17 @@ pub struct Scene {
     pub external_files: Vec<ExternalFile>,
     /// The images that numbers of used materials are multiplied by.
     pub images: Vec<Image>,
+    /// Where texture coordinates lie, if [`Limits::texels`] asked for it.
+    pub geometry: Geometry,
     /// What is odd about the file.
     pub warnings: Vec<Warning>,
+}
+
+impl Scene {
+    /// The textures that numbers of lit materials are multiplied by, each as its material reads it.
+    pub fn readings(&self) -> impl Iterator<Item = Sampled> + '_ {
+        self.materials.iter().filter(|m| m.used && m.lit).flat_map(|m| m.sampled(false))
+    }
 }
 
 /// Reads a `.glb` or `.gltf` file. The content decides which, not the name.
@@ -248,7 +263,7 @@ fn read_bytes_of(bytes: &[u8], name: &str, limits: &Limits) -> Result<Scene, Fau
         Some(_) => return Err(Fault::NotGltf { got: first_bytes(text) }),
     }
     let text = std::str::from_utf8(text).map_err(|e| Fault::Utf8 { offset: e.valid_up_to() })?;
-    let tree = parse::parse(text, limits.json_values)?;
+    let tree = parse::parse(text, limits.json_values, limits.texels)?;
     let mut scene = document::scene(&tree, bin.as_deref(), limits)?;
     name.clone_into(&mut scene.file_name);
     scene.warnings.splice(0..0, warnings);

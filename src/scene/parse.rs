@@ -49,9 +49,13 @@ const SKIPPED: &[&[&str]] = &[
     &["nodes", "*", "weights"],
 ];
 
-/// Reads a document of at most `max_values` kept values.
-pub(super) fn parse(text: &str, max_values: usize) -> Result<Value, Fault> {
-    let state = State { max_values, left: Cell::new(max_values), ..State::default() };
+/// What is kept besides, where it is asked which texels meshes cover.
+const GEOMETRY: &[&[&str]] =
+    &[&["accessors"], &["bufferViews", "*", "extensions"], &["meshes", "*", "primitives", "*", "targets"]];
+
+/// Reads a document of at most `max_values` kept values, with what says where geometry lies if that is asked.
+pub(super) fn parse(text: &str, max_values: usize, geometry: bool) -> Result<Value, Fault> {
+    let state = State { max_values, geometry, left: Cell::new(max_values), ..State::default() };
     let mut reader = serde_json::Deserializer::from_str(text);
     let parsed = Seed(&state).deserialize(&mut reader).and_then(|value| reader.end().map(|()| value));
     parsed.map_err(|error| state.fault.take().unwrap_or_else(|| state.syntax(&error)))
@@ -69,6 +73,7 @@ enum Owned {
 struct State {
     path: RefCell<Vec<Owned>>,
     max_values: usize,
+    geometry: bool,
     left: Cell<usize>,
     fault: RefCell<Option<Fault>>,
 }
@@ -112,15 +117,18 @@ impl State {
             Some(Owned::Key(key)) => key.as_str(),
             _ => "",
         };
+        let is = |rule: &&[&str]| {
+            rule.len() == path.len()
+                && rule.iter().enumerate().all(|(i, want)| *want == "*" || *want == key(i))
+        };
+        if self.geometry && GEOMETRY.iter().any(&is) {
+            return false;
+        }
         if path.len() == 1 {
             return !KEPT.contains(&key(0));
         }
         // `extras` is the application's own data, anywhere.
-        key(path.len() - 1) == "extras"
-            || SKIPPED.iter().any(|rule| {
-                rule.len() == path.len()
-                    && rule.iter().enumerate().all(|(i, want)| *want == "*" || *want == key(i))
-            })
+        key(path.len() - 1) == "extras" || SKIPPED.iter().any(is)
     }
 }
 

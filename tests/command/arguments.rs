@@ -7,7 +7,7 @@ use clap::{Arg, Command, CommandFactory, Parser};
 
 /// Values, of which every argument takes one.
 const VALUES: &[&str] =
-    &["1", "0.5", "x", "8", "a=b", "R,G,B", "1,2,3", "bash", "models", "json", "on", "roughness"];
+    &["1", "0.5", "x", "8", "a=b", "R,G,B", "1,2,3", "bash", "models", "json", "on", "roughness", "whole"];
 
 fn verbs() -> Vec<Command> {
     let mut all = Cli::command();
@@ -102,7 +102,7 @@ const MODES: &[(&str, &[&str], &[&str])] = &[
     (
         "bake",
         &["--engine=osl", "--suggest=1e-3"],
-        &["domain", "jobs", "message_format", "root", "pixels", "margin", "maps", "keep"],
+        &["scene", "domain", "jobs", "message_format", "root", "pixels", "texels", "margin", "keep"],
     ),
     (
         "bake",
@@ -118,6 +118,7 @@ const MODES: &[(&str, &[&str], &[&str])] = &[
             "strict",
             "root",
             "pixels",
+            "texels",
             "margin",
             "maps",
             "keep",
@@ -140,6 +141,7 @@ const MODES: &[(&str, &[&str], &[&str])] = &[
             "strict",
             "root",
             "pixels",
+            "texels",
             "margin",
             "maps",
             "keep",
@@ -185,6 +187,7 @@ fn arguments_without_effect_are_refused_by_their_values() {
     for (args, named) in [
         (&["bake", text(&recipe), "--suggest", "1e-3"][..], "--suggest"),
         (&["bake", text(&recipe), "--margin", "0.1"], "--margin"),
+        (&["bake", text(&recipe), "--texels", "referenced"], "--texels"),
         (&["plot", "ggx", "-p", "alpha=0.1", "-p", "alpha=0.2"], "alpha"),
         (&["albedo", "lambert", "--phi", "1"], "--phi"),
         (&["verify", text(&file), "--hashes"], "--hashes"),

@@ -19,6 +19,7 @@ mod anisotropic;
 mod area_light;
 mod axes;
 mod coat;
+mod covered;
 mod film;
 mod fuzz;
 mod ggx;
@@ -44,7 +45,7 @@ pub use kept::Kept;
 pub use maps::{AskedMap, KINDS, MapAsker, SceneMaps, maps};
 pub use pictures::{PIXELS, Pictures, bytes_of};
 pub use reasons::reasons;
-pub use survey::{Survey, SurveyOptions, Surveyed, survey, survey_with};
+pub use survey::{Survey, SurveyOptions, Surveyed, Texels, survey, survey_with};
 
 /// Why the needs of a scene make no plan.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

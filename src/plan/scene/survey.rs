@@ -7,6 +7,30 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
+/// Which texels of an image count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Texels {
+    /// All.
+    #[default]
+    Whole,
+    /// Those that the meshes cover, as the sampler reads them at the image's own size.
+    Referenced,
+}
+
+impl Texels {
+    /// All of them.
+    pub const ALL: [Texels; 2] = [Texels::Whole, Texels::Referenced];
+
+    /// Id.
+    #[must_use]
+    pub const fn id(self) -> &'static str {
+        match self {
+            Texels::Whole => "whole",
+            Texels::Referenced => "referenced",
+        }
+    }
+}
+
 /// How scenes are looked at.
 #[derive(Debug, Clone)]
 pub struct SurveyOptions {
@@ -16,11 +40,18 @@ pub struct SurveyOptions {
     pub pixels: u64,
     /// How a shader takes roughness.
     pub reader: Reader,
+    /// Which texels count.
+    pub texels: Texels,
 }
 
 impl Default for SurveyOptions {
     fn default() -> SurveyOptions {
-        SurveyOptions { root: None, pixels: super::PIXELS, reader: Reader::default() }
+        SurveyOptions {
+            root: None,
+            pixels: super::PIXELS,
+            reader: Reader::default(),
+            texels: Texels::default(),
+        }
     }
 }
 
@@ -70,7 +101,7 @@ pub fn survey_with(
     let known: &Kept = kept;
     let one = |path: &PathBuf| match known.find(path) {
         Some(entry) => Ok(Found { all: (entry.scene.clone(), entry.needs.clone()), new: None }),
-        None => look(path, &pictures, options.reader),
+        None => look(path, &pictures, options),
     };
     let read: Vec<_> = files.par_iter().map(one).collect();
     let (mut faults, mut count) = (Vec::new(), 0);
@@ -104,12 +135,15 @@ struct Found {
     new: Option<New>,
 }
 
-fn look(path: &Path, pictures: &Pictures, reader: Reader) -> Result<Found, SceneError> {
+fn look(path: &Path, pictures: &Pictures, options: &SurveyOptions) -> Result<Found, SceneError> {
     let before = kept::stamp(path);
-    let (scene, hash) = scene::read_hashed(path, &Limits::default())?;
+    let (scene, hash) = {
+        let texels = options.texels == Texels::Referenced;
+        scene::read_hashed(path, &Limits { texels, ..Limits::default() })?
+    };
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let look = pictures.look(&scene, folder);
-    let needs = scene::analyse_with(&scene, &look, reader);
+    let needs = scene::analyse_with(&scene, &look, options.reader);
     let touched = pictures.files(&scene, folder);
     let (materials, images) = (scene.materials.len(), scene.images.len());
     let warnings = scene.warnings.iter().map(ToString::to_string).collect();
