@@ -32,7 +32,7 @@ pub struct Args {
     /// Masking of the GGX lobes: that of the tables and of glTF's appendix (correlated), or that of the appendix before 2026 (separable).
     #[arg(long, value_name = "MASKING", default_value = "correlated", value_parser = ["correlated", "separable"])]
     masking: String,
-    /// End with 4 where a rule is broken or a material could not be judged.
+    /// End with 4 where a rule is broken, or a material could not be judged as it is.
     #[arg(long)]
     strict: bool,
     /// Print one JSON object.
@@ -69,7 +69,8 @@ pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
     } else {
         output::data(&text(&reviews, files.len() > 1))?;
     }
-    let clean = reviews.iter().all(|r| r.broken.is_empty() && r.unknown.is_empty());
+    let clean =
+        reviews.iter().all(|r| r.broken.is_empty() && r.unknown.is_empty() && r.simplified.is_empty());
     Ok(if args.strict && !clean { Exit::Failed } else { Exit::Done })
 }
 
@@ -105,6 +106,9 @@ fn text(reviews: &[Review], with_files: bool) -> String {
         lines.extend(review.broken.iter().map(|broken| line(broken, with_files)));
         for (material, why) in &review.unknown {
             lines.push(format!("{} {material}: not judged: {}", show(&material.file), show(why)));
+        }
+        for (material, how) in &review.simplified {
+            lines.push(format!("{} {material}: simplified: {}", show(&material.file), show(how)));
         }
     }
     let count = |f: &dyn Fn(&Review) -> usize| reviews.iter().map(f).sum::<usize>();

@@ -1,7 +1,7 @@
 //! Rules over the texels of materials. Albedos are those of the model `gltf`, which is integrated by itself.
 
 use super::planned::{textured_with, write_png};
-use crate::tolerance::SINGLE_ANGLES;
+use crate::tolerance::{FEW_ROUNDINGS, SINGLE_ANGLES};
 use brdfbake::cancel::Cancel;
 use brdfbake::pipeline::materials::{Broken, Judging, Parts, RULES, Review, Stack, Texel, review};
 use brdfbake::tables::spec::Request;
@@ -51,7 +51,8 @@ fn grey(base: f64, roughness: f64, metallic: f64) -> Texel {
         base: [base; 3],
         roughness,
         metallic,
-        f0: 0.04,
+        f0: [0.04; 3],
+        specular: 1.0,
         sheen_roughness: 0.5,
         coat_roughness: 0.1,
         ..Texel::default()
@@ -81,6 +82,58 @@ fn a_sheen_takes_from_below_what_it_reflects() {
     let texel = Texel { sheen: 0.8, sheen_colour: [0.8; 3], ..grey(0.5, 0.6, 0.0) };
     let (ours, theirs) = (Stack { texel: &texel, parts: parts() }.largest_albedo(), model(&texel));
     assert!(ours >= theirs - TABLES && ours - theirs < 0.05, "{ours} against {theirs}");
+}
+
+/// `KHR_materials_specular`: `w (f0 c + (1 - f0 c) (1 - v.h)^5)` lies on what is left of the base; what goes through is not reflected.
+#[test]
+fn weight_and_colour_of_the_specular_layer_and_what_goes_through_are_in_the_stack() {
+    let albedo = |texel: Texel| Stack { texel: &texel, parts: parts() }.largest_albedo();
+    let bare = grey(0.6, 0.5, 0.0);
+    // without weight only the Lambertian lobe is left, whole: its albedo is the colour
+    assert!((albedo(Texel { specular: 0.0, ..bare }) - 0.6).abs() < FEW_ROUNDINGS);
+    assert!((albedo(Texel { specular: 0.0, through: 0.75, ..bare }) - 0.15).abs() < FEW_ROUNDINGS);
+    // F0 = 1 in a channel takes all light from the base; that channel reflects as a white metal does
+    let mirror = Texel { f0: [1.0, 0.0, 0.0], ..bare };
+    assert!((albedo(mirror) - albedo(grey(1.0, 0.5, 1.0))).abs() < FEW_ROUNDINGS);
+    // a half of the weight is the mean of both
+    let half = albedo(Texel { specular: 0.5, base: [0.0; 3], ..bare });
+    assert!((half - 0.5 * albedo(Texel { base: [0.0; 3], ..bare })).abs() < FEW_ROUNDINGS);
+}
+
+#[test]
+fn what_the_stack_leaves_out_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    write_png(&folder.path().join("mr.png"), 2, &[[0, 128, 0], [0, 128, 255]]);
+    let material = |more: &str| {
+        let text = format!(
+            r#"{{ "asset": {{ "version": "2.0" }}, "images": [{{ "uri": "mr.png" }}], "textures": [{{ "source": 0 }}],
+                "materials": [{{ {more} }}], "meshes": [{{ "primitives": [{{ "attributes": {{ "NORMAL": 1 }}, "material": 0 }}] }}] }}"#
+        );
+        reviewed(folder.path(), &text)
+    };
+    let told =
+        |more: &str| material(more).simplified.into_iter().map(|(_, how)| how).collect::<Vec<_>>().join("; ");
+    assert!(
+        told(r#""extensions": { "KHR_materials_anisotropy": { "anisotropyStrength": 0.5 } }"#)
+            .contains("alike")
+    );
+    assert_eq!(told(r#""extensions": { "KHR_materials_anisotropy": { "anisotropyStrength": 0 } }"#), "");
+    let pair = |more: &str| {
+        told(&format!(
+            r#""pbrMetallicRoughness": {{ "baseColorTexture": {{ "index": 0 {more} }}, "metallicRoughnessTexture": {{ "index": 0 }} }}"#
+        ))
+    };
+    assert_eq!(pair(""), "");
+    assert!(pair(r#", "texCoord": 1"#).contains("UV sets"));
+    // the texture of the weight is alpha, that of the colour sRGB: 1 and a channel of 0 here
+    let specular = r#""pbrMetallicRoughness": { "metallicFactor": 0, "baseColorFactor": [0.5, 0.5, 0.5, 1] },
+        "extensions": { "KHR_materials_specular": { "specularColorTexture": { "index": 0 }, "specularColorFactor": [9, 9, 9] } }"#;
+    let found = material(specular);
+    assert_eq!((found.texels, found.unknown.len()), (2, 0));
+    let gloss = material(r#""extensions": { "KHR_materials_pbrSpecularGlossiness": {} }"#);
+    assert!(gloss.unknown[0].1.contains("convert"), "{gloss:?}");
+    let toon = material(r#""extensions": { "VRMC_materials_mtoon": {} }"#);
+    assert_eq!(toon.materials, 0);
 }
 
 fn reviewed(folder: &Path, text: &str) -> Review {

@@ -61,6 +61,8 @@ pub struct Review {
     pub broken: Vec<Broken>,
     /// Materials that could not be judged, and why.
     pub unknown: Vec<(MaterialRef, String)>,
+    /// Materials that were judged more simply than they are, and how.
+    pub simplified: Vec<(MaterialRef, String)>,
 }
 
 /// Judges the materials of a scene that are lit and in use.
@@ -68,11 +70,11 @@ pub struct Review {
 /// # Errors
 /// [`SceneError`] for a scene that is refused.
 pub fn review(path: &Path, parts: &Parts, judging: &Judging) -> Result<Review, SceneError> {
-    let scene = read(path, &Limits { colours: true, ..Limits::default() })?;
+    let scene = read(path, &Limits { colours: true, texels: true, ..Limits::default() })?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let maps = Pictures::new(judging.look.root.clone(), judging.look.pixels);
     let mut review = Review::default();
-    for material in scene.materials.iter().filter(|m| m.used && m.lit && !m.is_unlit()) {
+    for material in scene.materials.iter().filter(|m| m.used && m.lit && !m.is_unlit() && !m.is_replaced()) {
         let by = MaterialRef {
             file: scene.file_name.clone(),
             index: Some(material.index),
@@ -82,6 +84,7 @@ pub fn review(path: &Path, parts: &Parts, judging: &Judging) -> Result<Review, S
         match MaterialTexels::read(material, &scene, folder, &maps) {
             Ok(texels) => {
                 review.texels += texels.len();
+                review.simplified.extend(texels.simplified.iter().map(|how| (by.clone(), how.clone())));
                 review.broken.extend(judge(&texels, parts, judging, &by));
             }
             Err(why) => review.unknown.push((by, why)),

@@ -1,8 +1,9 @@
 //! The albedo of a stack of glTF layers, from tables of its parts.
 //!
 //! Base, glTF 2.0 Appendix B.3: metal and dielectric mixed by metalness, `E_metal = scale rho + bias`,
-//! `E_dielectric = rho (1 - f0) (1 - S) + f0 scale + bias`, where `S(mu) = int (1 - wo.wh)^5 mu_i / pi dwi` is what Schlick's factor
-//! takes from a Lambertian lobe. `KHR_materials_sheen` puts `s E_s + (1 - max(s) E_s) E` on it, and `KHR_materials_clearcoat`
+//! `E_dielectric = rho (1 - t) (1 - w (f + (1 - f) S)) + w (f0 scale + bias)`, where `S(mu) = int (1 - wo.wh)^5 mu_i / pi dwi` is what
+//! Schlick's factor takes from a Lambertian lobe, `w` and the colour in f0 are those of `KHR_materials_specular`, `f` is the largest
+//! channel of f0, and `t` the share of `KHR_materials_transmission` and `KHR_materials_diffuse_transmission`, which goes through. `KHR_materials_sheen` puts `s E_s + (1 - max(s) E_s) E` on it, and `KHR_materials_clearcoat`
 //! `c F_c(mu) E_c + (1 - c F_c(mu)) E`, `F_c` being Schlick's factor of index 1.5 at the view and `E_c` the
 //! albedo of the coat without it (its `fresnel_coat` mixes by the view cosine).
 
@@ -131,11 +132,13 @@ impl Stack<'_> {
             let [scale, bias] = [0, 1].map(|c| row(&p.split, view, t.roughness, c));
             let sheen = if t.sheen > 0.0 { row(&p.sheen, view, t.sheen_roughness, 0) } else { 0.0 };
             let coat = [0, 1].map(|c| row(&p.split, view, t.coat_roughness, c));
+            let brightest = t.f0.iter().copied().fold(0.0, f64::max);
+            let below = 1.0 - t.specular * (brightest + (1.0 - brightest) * p.lost[view]);
             for channel in 0..3 {
                 let rho = t.base[channel];
                 let metal = scale * rho + bias;
-                let diffuse = rho * (1.0 - t.f0) * (1.0 - p.lost[view]);
-                let dielectric = diffuse + t.f0 * scale + bias;
+                let diffuse = rho * (1.0 - t.through) * below;
+                let dielectric = diffuse + t.specular * (t.f0[channel] * scale + bias);
                 let base = dielectric + t.metallic * (metal - dielectric);
                 let clothed = t.sheen_colour[channel] * sheen + (1.0 - t.sheen * sheen) * base;
                 let all = if t.coat > 0.0 {
@@ -155,9 +158,10 @@ impl Stack<'_> {
     pub fn lost(&self) -> f64 {
         let t = self.texel;
         let missing = 1.0 - row(&self.parts.average, 0, t.roughness, 0);
-        let brightest = t.base.iter().copied().fold(0.0, f64::max);
-        let f0 = t.f0 + t.metallic * (brightest - t.f0);
+        let brightest = |of: [f64; 3]| of.into_iter().fold(0.0, f64::max);
         // mean of Schlick's factor over the hemisphere
-        (f0 + (1.0 - f0) / 21.0) * missing
+        let mean = |f0: f64| f0 + (1.0 - f0) / 21.0;
+        let dielectric = t.specular * mean(brightest(t.f0));
+        (dielectric + t.metallic * (mean(brightest(t.base)) - dielectric)) * missing
     }
 }

@@ -145,7 +145,7 @@ fn mean(name: String, texels: &MaterialTexels) -> Surface {
         }
         surface.metallic += t.metallic / n;
         surface.roughness += t.roughness / n;
-        surface.f0 += t.f0 / n;
+        surface.f0 += t.reflectance() / n;
     }
     surface
 }
