@@ -3,7 +3,7 @@
 //! A shader takes the corners of a light through the inverse matrix, in the frame with the normal as z and the view in
 //! the xz plane, and adds the edges up in closed form. The energy is in the table `ltc-magnitude`.
 
-use super::ltc_fit::{self, Family, Fitted};
+use super::ltc_fit::{self, Family, Fitted, Known};
 use super::role::{Distance, Entry, Fitted as Kind, Light, Lobe, Side};
 use super::sweep::Sweep;
 use super::{
@@ -15,6 +15,7 @@ use crate::grid::Axis;
 use crate::grid::provenance::{Residual, Spread};
 use crate::grid::table::{Extreme, Table};
 use crate::integrate::{Estimate, MAX_CHANNELS};
+use crate::models::Params;
 use crate::terms::ltc::Inverse;
 use rayon::prelude::*;
 
@@ -65,7 +66,7 @@ pub static INFO: TableInfo = TableInfo {
         },
         Layout {
             id: "over-m33",
-            doc: "M^-1 = [[z11, 0, z13], [0, z22, 0], [z31, 0, 1]], as HDRP reads it; grows as 1 / alpha",
+            doc: "M^-1 = [[z11, 0, z13], [0, z22, 0], [z31, 0, 1]], as HDRP reads it; grows as 1 / alpha. A lobe that does not see the normal has no such matrix: there z31 = 0",
             channels: &[
                 entry("ltc.z11", "m11 / m33 of the inverse matrix", Entry::Z11),
                 entry("ltc.z31", "m31 / m33 of the inverse matrix (row z, column x)", Entry::Z31),
@@ -120,13 +121,20 @@ pub static INFO: TableInfo = TableInfo {
     notes: "The error of a matrix entry is that of the residual of its lobe (ltc.l3), which is what a fit promises: broad lobes and grazing views \
         leave the matrix loose, and other matrices fit as well. Levels are raised until the entries agree too, or end. How well the lobe fits is \
         in the channels ltc.l3 and ltc.variation and, as largest and mean, in every file. Ask for 1e-3, not less. A \
-        mirror has no matrix: keep alpha at 1e-5 or more. Of a model with a Fresnel factor that can be split off, f is taken without it. \
+        mirror has no matrix: keep alpha at 1e-5 or more. Nor has a lobe whose cube has no integral, as that of V-shaped grooves for a view in \
+        the horizon: by default its views begin at cos 1.57, where Heitz and Hill's fitter begins. Of a model with a Fresnel factor that can be split off, f is taken without it. \
         The file's channels go by name: EXR sorts them.",
     bind,
 };
 
 /// alpha = 1e-5, as Heitz and Hill's fitter clamps it.
 const LEAST_ROUGHNESS: f64 = 0.003_162_277_660_168_379_5;
+
+/// cos 1.57, the most grazing view of the same fitter.
+const LEAST_MU: f64 = 0.000_796_326_710_733_263_3;
+
+/// Most texels in the horizon whose lobes are looked at.
+const LOOKED_AT: usize = 16;
 
 struct Matrix {
     sweep: Sweep,
@@ -158,7 +166,15 @@ fn default_axes(setting: &Setting<'_>) -> Vec<Axis> {
         matches!(role, Role::Matrix(_, Z11 | Z13 | Z22 | Z31 | A | B))
     };
     let grows = setting.layout.channels.iter().any(|c| grows(c.role));
-    super::ltc_magnitude::axes(if grows { 0.1 } else { LEAST_ROUGHNESS })
+    let mut axes = super::ltc_magnitude::axes(if grows { 0.1 } else { LEAST_ROUGHNESS });
+    let model = setting.model.and_then(|info| {
+        let params = Params::resolve(info.id, info.params, []).ok()?;
+        (info.build)(&params).ok()
+    });
+    if model.is_some_and(|m| ltc_fit::has_pole(&*m)) {
+        axes.iter_mut().filter(|a| a.quantity.id == "mu").for_each(|a| a.clamp = Some([LEAST_MU, 1.0]));
+    }
+    axes
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
@@ -171,7 +187,27 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     let splits = spec.model.as_ref().is_some_and(|(info, _)| info.splits);
     let sweep = Sweep::new(spec, splits)?;
     sweep.refuse_mirrors(spec.kind.id, "is a mirror: a delta has no lobe to fit")?;
-    Ok(Box::new(Matrix { sweep, roles: spec.roles(), parts: spec.each(part)? }))
+    let parts = spec.each(part)?;
+    if parts.iter().any(|p| family(*p).is_some()) {
+        refuse_poles(spec, &sweep)?;
+    }
+    Ok(Box::new(Matrix { sweep, roles: spec.roles(), parts }))
+}
+
+/// Refuses views in the horizon of a model whose lobe has no integral of its cube there.
+fn refuse_poles(spec: &Spec, sweep: &Sweep) -> Result<(), BindError> {
+    let grid = &spec.grid;
+    let in_horizon: Vec<usize> =
+        (0..grid.len()).filter(|t| sweep.mu(grid.texel(*t).values()).abs() <= 0.0).collect();
+    for texel in in_horizon.iter().step_by(in_horizon.len().div_ceil(LOOKED_AT).max(1)) {
+        // what the model refuses is told with its place when it is baked
+        if sweep.model(grid.texel(*texel).values()).is_ok_and(|m| ltc_fit::has_pole(&*m)) {
+            let why = "has no fit at mu = 0: the integral of the cube of its lobe is infinite there; give the axis mu \
+                `clamp = [0.0008, 1]`, or a domain without 0";
+            return Err(BindError::Model { kind: spec.kind.id, model: sweep.info().id.to_owned(), why });
+        }
+    }
+    Ok(())
 }
 
 /// Which fit a channel is taken from; an albedo comes with either.
@@ -194,8 +230,13 @@ impl Baker for Matrix {
             if !self.parts.iter().any(|p| mine(*p)) {
                 continue;
             }
-            let fitted = ltc_fit::fit(&*model, view, wanted, |f| content(f, tolerance))?;
+            let fit = |family| ltc_fit::fit(&*model, view, family, |f| known(f, tolerance));
+            let mut fitted = fit(wanted)?;
             e.evaluations = e.evaluations.saturating_add(fitted.evaluations);
+            if fitted.fit.inverse.m33 <= 0.0 && self.parts.iter().any(|p| mine(*p) && over_m33(*p)) {
+                fitted = fit(Family::Level)?;
+                e.evaluations = e.evaluations.saturating_add(fitted.evaluations);
+            }
             for (i, part) in self.parts.iter().enumerate().filter(|(_, p)| mine(**p)) {
                 let of = channel(*part, &fitted);
                 (e.value[i], e.error[i]) = (of.value, of.error);
@@ -236,13 +277,10 @@ impl Matrix {
         let inverse = stored(&self.roles, table.at(texel))?;
         let point = table.grid.texel(texel);
         let model = self.sweep.model(point.values()).ok()?;
-        let fit = ltc_fit::judge(&*model, self.sweep.view(point.values()), &inverse, JUDGED_AT).ok()?;
+        let (fit, _) = ltc_fit::judged(&*model, self.sweep.view(point.values()), &inverse).ok()?;
         Some([fit.l3, fit.variation])
     }
 }
-
-/// Level of the charts at which the lobes of a finished table are measured.
-const JUDGED_AT: f64 = 11.0;
 
 /// The inverse matrix that the values of a texel hold, in whichever layout.
 #[must_use]
@@ -274,27 +312,36 @@ struct Value {
 
 /// Is a fit as good as it is asked for, whatever channels are taken from it? Its lobe is, and its entries over `m33`, which agree last.
 /// NaN is not.
-fn content(fitted: &Fitted, tolerance: f64) -> bool {
+fn known(fitted: &Fitted, tolerance: f64) -> Known {
     let (m, error) = (&fitted.fit.inverse, &fitted.error);
     let largest = [m.m11, m.m22, m.m13, m.m31].into_iter().map(f64::abs).fold(0.0, f64::max);
     let entries = error.entries * (1.0 + largest / m.m33.abs()) / m.m33.abs();
-    [entries, error.l3, error.variation, error.albedo].iter().all(|e| *e <= tolerance)
+    match [error.l3, error.variation, error.albedo].iter().all(|e| *e <= tolerance) {
+        false => Known::Neither,
+        true if entries <= tolerance => Known::Wholly,
+        true => Known::Lobe,
+    }
+}
+
+/// Is it an entry over `m33`, which means nothing where that is not positive?
+fn over_m33(part: Part) -> bool {
+    matches!(part, Part::Entry(Entry::Z11 | Entry::Z31 | Entry::Z22 | Entry::Z13))
 }
 
 fn channel(part: Part, fitted: &Fitted) -> Value {
     let (m, fit, error) = (&fitted.fit.inverse, &fitted.fit, &fitted.error);
     let entry = |value: f64| Value { value, error: error.l3 };
-    let over_m33 = |v: f64| entry(v / m.m33);
+    let over = |v: f64| entry(v / m.m33);
     let plain = |value: f64, error: f64| Value { value, error };
     match part {
         Part::Entry(Entry::M11) => entry(m.m11),
         Part::Entry(Entry::M31) => entry(m.m31),
         Part::Entry(Entry::M13) => entry(m.m13),
         Part::Entry(Entry::M33) => entry(m.m33),
-        Part::Entry(Entry::Z11) => over_m33(m.m11),
-        Part::Entry(Entry::Z31) => over_m33(m.m31),
-        Part::Entry(Entry::Z22 | Entry::A) => over_m33(m.m22),
-        Part::Entry(Entry::Z13 | Entry::B) => over_m33(m.m13),
+        Part::Entry(Entry::Z11) => over(m.m11),
+        Part::Entry(Entry::Z31) => over(m.m31),
+        Part::Entry(Entry::Z22 | Entry::A) => over(m.m22),
+        Part::Entry(Entry::Z13 | Entry::B) => over(m.m13),
         Part::Distance(_, Distance::Cubic) => plain(fit.l3, error.l3),
         Part::Distance(_, Distance::Variation) => plain(fit.variation, error.variation),
         Part::Albedo => plain(fit.albedo, error.albedo),

@@ -5,13 +5,17 @@
 //! mean direction and searches three numbers; here all four of the matrix are free.
 //!
 //! The model is evaluated once a level at the nodes of its own [`Chart`](crate::integrate::Chart); the lobe below the horizon,
-//! where the model is 0, is integrated in the space of the cosine. The search is Newton's, from the moments of the target. Then the
-//! level is raised until the matrices of three levels agree. Nothing depends on neighbouring texels.
+//! where the model is 0, is integrated in the space of the cosine. The search is Newton's, from the moments of the target, in rounds:
+//! a lobe that went far from the one whose nodes it is judged on gets nodes of its own, or it would shrink between them to a lobe that
+//! only they see. Then the level is raised until the matrices of three levels agree. Nothing depends on neighbouring texels.
 
 mod newton;
 mod objective;
+mod pole;
 mod proposal;
 mod target;
+
+pub use pole::has_pole;
 
 use super::TexelError;
 use crate::integrate::{Trust, View};
@@ -26,6 +30,8 @@ use target::Target;
 pub enum Family {
     /// All that are even in y: four numbers.
     Even,
+    /// Those of them with m31 = 0, whose lobes end at the horizon of the surface: three numbers.
+    Level,
     /// `[[a, 0, b], [0, a, 0], [0, 0, 1]]`: two numbers, as for sheen.
     Sheared,
     /// `[[a, 0, 0], [0, a, 0], [0, 0, 1]]`: round lobes, for a view along the normal.
@@ -39,6 +45,7 @@ impl Family {
             Family::Even => {
                 &[[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
             }
+            Family::Level => &[[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]],
             Family::Sheared => &[[1.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]],
             Family::Round => &[[1.0, 1.0, 0.0, 0.0]],
         }
@@ -51,6 +58,7 @@ impl Family {
         let scale = b.m22 / m33;
         match self {
             Family::Even => *b,
+            Family::Level => Inverse { m31: 0.0, m33, ..*b },
             Family::Sheared => Inverse { m11: scale, m22: scale, m13: b.m13 / m33, m31: 0.0, m33: 1.0 },
             Family::Round => Inverse { m11: scale, m22: scale, ..Inverse::COSINE },
         }
@@ -101,8 +109,26 @@ pub struct FitError {
     pub albedo: f64,
 }
 
+/// How well a fit is known, as the one who asked for it sees it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Known {
+    /// As well as it was asked for.
+    Wholly,
+    /// Its lobe is, the entries of its matrix are not: a broad lobe leaves them loose.
+    Lobe,
+    /// Not even its lobe.
+    Neither,
+}
+
 /// Levels of the charts.
-const LEVELS: [f64; 9] = [4.0, 5.6, 8.0, 11.0, 15.0, 20.0, 27.0, 38.0, 54.0];
+const LEVELS: [f64; 11] = [4.0, 5.6, 8.0, 11.0, 15.0, 20.0, 27.0, 38.0, 54.0, 76.0, 108.0];
+
+/// As many of them are for the entries; the last ones, which cost eight times as much, only for lobes that are not known.
+const FOR_ENTRIES: usize = 9;
+
+/// Longest way of a search on the nodes of one lobe, and the most rounds: nodes see a lobe of half the width as well.
+const REACH: f64 = 0.5;
+const ROUNDS: u32 = 40;
 
 /// Trust in them: the last two differences count alike, the last one twice.
 const TRUST: Trust = Trust { gain: &[0.5], memory: &[0.5] };
@@ -110,7 +136,7 @@ const TRUST: Trust = Trust { gain: &[0.5], memory: &[0.5] };
 /// Relative error below which Newton's method is needed in full at every level.
 const NEARLY_PERFECT: f64 = 1e-3;
 
-/// Fits the model at a view, with ever finer nodes until `done` is content with the errors or the levels end.
+/// Fits the model at a view, with ever finer nodes until it is [`Known::Wholly`] or the levels end.
 ///
 /// A surface that reflects nothing at this view gets the clamped cosine and no error: nothing is multiplied by it.
 ///
@@ -120,7 +146,7 @@ pub fn fit(
     model: &dyn Brdf,
     view: View,
     family: Family,
-    done: impl Fn(&Fitted) -> bool,
+    known: impl Fn(&Fitted) -> Known,
 ) -> Result<Fitted, TexelError> {
     // along the normal every lobe of an isotropic surface is round
     let round = view.sine().abs() == 0.0 && !model.turns();
@@ -140,7 +166,7 @@ pub fn fit(
         let fit = Fit {
             inverse: found.inverse,
             l3: libm::cbrt(found.at.value / target.cube),
-            variation: objective::variation(&target.nodes, &found.inverse),
+            variation: target.variation(&found.inverse),
             albedo: target.albedo,
         };
         fits.push(fit);
@@ -150,13 +176,17 @@ pub fn fit(
             return Err(TexelError::NotFinite { channel: 0, value: fit.l3 });
         }
         if fits.len() > 2 {
-            if done(&fitted) {
+            let now = known(&fitted);
+            if now == Known::Wholly {
                 return Ok(fitted);
             }
             // where the levels end without content, the one whose lobe is known best
             let of_the_lobe = |f: &Fitted| f.error.l3.max(f.error.variation);
             if best.is_none_or(|b| of_the_lobe(&fitted) < of_the_lobe(&b)) {
                 best = Some(fitted);
+            }
+            if now == Known::Lobe && fits.len() >= FOR_ENTRIES {
+                break;
             }
         }
     }
@@ -166,16 +196,31 @@ pub fn fit(
 /// The best matrix on the nodes of a level, from that of the level before (with its error) or from the moments.
 fn search(target: &Target<'_>, family: Family, last: Option<&(Optimum, f64)>, nodes: &mut Slices) -> Optimum {
     let Some((last, l3)) = last else {
-        let start = family.nearest(&target.moments());
-        target.nodes_for(&start, nodes);
-        return newton::minimise(nodes, start, family);
+        return settle(target, family.nearest(&target.moments()), family, nodes);
     };
-    target.nodes_for(&last.inverse, nodes);
     // the Hessian of a nearly perfect fit vanishes with its error, and is that of no other nodes
     if *l3 > NEARLY_PERFECT {
-        newton::refine(nodes, last, family)
-    } else {
-        newton::minimise(nodes, last.inverse, family)
+        target.nodes_for(&last.inverse, nodes);
+        if let Some(found) = newton::refine(nodes, last, family) {
+            return found;
+        }
+    }
+    settle(target, last.inverse, family, nodes)
+}
+
+/// The best matrix on nodes that were made for one like it.
+fn settle(target: &Target<'_>, mut start: Inverse, family: Family, nodes: &mut Slices) -> Optimum {
+    let mut evaluations = 0u32;
+    let mut round = 0;
+    loop {
+        target.nodes_for(&start, nodes);
+        let found = newton::minimise(nodes, start, family, REACH);
+        evaluations = evaluations.saturating_add(found.evaluations);
+        round += 1;
+        if found.way <= REACH || round == ROUNDS {
+            return Optimum { evaluations, ..found };
+        }
+        start = found.inverse;
     }
 }
 
@@ -238,7 +283,7 @@ pub fn nearest_sheared(
     let family = if round { Family::Round } else { Family::Sheared };
     let search = |&[a, b]: &[f64; 2]| {
         let start = Inverse { m11: a, m13: b, m22: a, m31: 0.0, m33: 1.0 };
-        newton::minimise(&slices, family.nearest(&start), family)
+        newton::minimise(&slices, family.nearest(&start), family, f64::INFINITY)
     };
     let found: Vec<Optimum> = starts.iter().map(search).collect();
     let evaluations = found.iter().fold(0u32, |sum, f| sum.saturating_add(f.evaluations));
@@ -262,7 +307,29 @@ pub fn judge(model: &dyn Brdf, view: View, inverse: &Inverse, level: f64) -> Res
     Ok(Fit {
         inverse: *inverse,
         l3: libm::cbrt(at.value / target.cube),
-        variation: objective::variation(&target.nodes, inverse),
+        variation: target.variation(inverse),
         albedo: target.albedo,
     })
 }
+
+/// The errors of a given matrix at a view at the first two levels that tell the same, and how far apart those are.
+///
+/// # Errors
+/// As [`fit`].
+pub fn judged(model: &dyn Brdf, view: View, inverse: &Inverse) -> Result<(Fit, f64), TexelError> {
+    let apart = |a: &Fit, b: &Fit| (a.l3 - b.l3).abs().max((a.variation - b.variation).abs());
+    let mut last = judge(model, view, inverse, JUDGED_AT[0])?;
+    let mut off = f64::INFINITY;
+    for level in &JUDGED_AT[1..] {
+        let next = judge(model, view, inverse, *level)?;
+        (off, last) = (apart(&last, &next), next);
+        if off <= THE_SAME {
+            break;
+        }
+    }
+    Ok((last, off))
+}
+
+/// Levels of the charts at which [`judged`] looks, and what counts as the same.
+const JUDGED_AT: [f64; 6] = [8.0, 11.0, 15.0, 20.0, 27.0, 38.0];
+const THE_SAME: f64 = 5e-4;

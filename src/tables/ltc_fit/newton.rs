@@ -33,6 +33,8 @@ pub(super) struct Optimum {
     /// At the last matrix but for the last step.
     pub(super) at: Objective,
     pub(super) evaluations: u32,
+    /// The lengths of all steps together: beyond a part of 1 the lobe is another than the one that the nodes were made for.
+    pub(super) way: f64,
 }
 
 /// `P M^-1`, its middle entry brought back to 1.
@@ -48,14 +50,14 @@ pub(super) fn step(b: &Inverse, d: [f64; N]) -> Inverse {
     .scaled(1.0 / m22)
 }
 
-/// The nearest local minimum below `start`.
-pub(super) fn minimise(nodes: &Slices, start: Inverse, family: Family) -> Optimum {
+/// The nearest local minimum below `start`, or the first matrix that is further than `reach` from it.
+pub(super) fn minimise(nodes: &Slices, start: Inverse, family: Family, reach: f64) -> Optimum {
     let mut inverse = start.scaled(1.0 / start.m22);
     let mut here = objective(nodes, &inverse);
     let mut damping = DAMPING[0];
     let mut evaluations = 1;
-    let mut before = 0.0;
-    while evaluations < EVALUATIONS && damping < DAMPING[1] {
+    let (mut before, mut way) = (0.0, 0.0);
+    while evaluations < EVALUATIONS && damping < DAMPING[1] && way <= reach {
         let Some(d) = direction(&here, family, damping) else {
             damping *= 10.0;
             continue;
@@ -67,6 +69,7 @@ pub(super) fn minimise(nodes: &Slices, start: Inverse, family: Family) -> Optimu
         // NaN is no improvement
         if next.minor() > 0.0 && next.m22 > 0.0 && there.value <= here.value {
             (inverse, here) = (next, there);
+            way += length;
             damping *= 0.1;
             // near the minimum each step is the square of the one before, or half of it if the fit is perfect
             if length * (length / before).min(1.0) < SHORTEST {
@@ -81,14 +84,14 @@ pub(super) fn minimise(nodes: &Slices, start: Inverse, family: Family) -> Optimu
         }
     }
     let evaluations = u32::try_from(evaluations * nodes.len()).unwrap_or(u32::MAX);
-    Optimum { inverse, at: here, evaluations }
+    Optimum { inverse, at: here, evaluations, way }
 }
 
-/// The minimum again, on other nodes: a few steps with the Hessian that is known, or a new search if they do not converge.
+/// The minimum again, on other nodes: a few steps with the Hessian that is known; `None` if they do not converge.
 ///
 /// The Hessians of two levels differ by their quadrature errors, a percent or so, so each step leaves that part of the
 /// distance.
-pub(super) fn refine(nodes: &Slices, last: &Optimum, family: Family) -> Optimum {
+pub(super) fn refine(nodes: &Slices, last: &Optimum, family: Family) -> Option<Optimum> {
     let mut optimum = *last;
     let mut before = NEARBY;
     for _ in 0..STEPS {
@@ -101,11 +104,11 @@ pub(super) fn refine(nodes: &Slices, last: &Optimum, family: Family) -> Optimum 
         optimum.inverse = step(&optimum.inverse, d);
         optimum.evaluations += u32::try_from(nodes.len()).unwrap_or(u32::MAX);
         if length * (length / before) < ENOUGH {
-            return optimum;
+            return Some(optimum);
         }
         before = 0.5 * length;
     }
-    minimise(nodes, last.inverse, family)
+    None
 }
 
 /// The damped Newton step, no longer than [`LONGEST`]; `None` if the damped Hessian is not positive.

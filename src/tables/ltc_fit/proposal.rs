@@ -51,7 +51,7 @@ fn rule(inverse: &Inverse, [from, to]: [f64; 2], orders: [usize; 2], out: &mut V
     }
 }
 
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [4, 128] first")]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped first")]
 fn order(wanted: f64) -> usize {
-    wanted.round().clamp(4.0, 128.0) as usize
+    wanted.round().clamp(4.0, gauss::MAX_ORDER as f64) as usize
 }

@@ -126,6 +126,20 @@ impl<'a> Target<'a> {
         out.pad();
     }
 
+    /// `1/2 int |f mu_i / E - D| = int max(0, f mu_i / E - D) = 1 - int min(f mu_i / E, D)`, since both integrate to 1.
+    ///
+    /// The nodes of one chart follow the lobe, and D with it: the second form. Those of several do not where D is a thin sheet across
+    /// the broadest of them: the third, on the nodes of D; a peak of the target between these is above D and counts for nothing.
+    pub(super) fn variation(&self, inverse: &Inverse) -> f64 {
+        if self.parts.len() == 1 {
+            return super::objective::variation(&self.nodes, inverse);
+        }
+        let (mut above, mut below) = (Vec::new(), Vec::new());
+        proposal::nodes(inverse, self.level, &mut above, &mut below);
+        self.evaluate(&mut above);
+        1.0 - above.iter().map(|n| n.weight * n.lobe.min(inverse.density(n.w))).sum::<f64>()
+    }
+
     /// Sets the lobe at nodes above the horizon.
     fn evaluate(&self, nodes: &mut [Node]) {
         let mut batch = Nodes::new(self.view);
