@@ -179,6 +179,16 @@ fn estimates_are_honest_at_a_few_draws_of_each_model() {
     assert!(bad.is_empty(), "{bad:#?}\n{}", worst(&rows, &outcomes));
 }
 
+/// Tails longer than GGX's, whose D has no bound at the horizon.
+#[test]
+fn estimates_are_honest_for_the_longest_tails() {
+    let mut rows = rows::read(&folder().join("truth_test.csv"));
+    rows.retain(|r| r.model == "student-t" && r.params["gamma"].as_f64().unwrap() < 2.0);
+    let outcomes = check::run(&rows, &check::TOLERANCES);
+    let bad: Vec<_> = outcomes.iter().filter(|o| o.lies() || o.ratio() > 3.0 || o.refused).collect();
+    assert!(bad.is_empty() && rows.len() >= 5, "{} rows, {bad:#?}\n{}", rows.len(), worst(&rows, &outcomes));
+}
+
 /// Writes `baseline_*.csv` from the product as it is.
 #[test]
 #[ignore = "writes tests/honesty/baseline_*.csv"]
@@ -269,6 +279,80 @@ fn compute_truths_of_texels() {
         known.extend(fresh);
         texel::write(&path, &known);
     }
+}
+
+/// Every layout of every kind of table has truths of an independent rule, or is in `kinds::WITHOUT` with the reason.
+#[test]
+fn every_kind_of_table_has_truths() {
+    let rows = texel::read(&folder().join("truth_texels.csv"));
+    let has = |kind: &str, layout: &str| {
+        rows.iter().any(|r| {
+            r.texel.kind == kind && r.texel.layout == layout && r.truths.iter().all(|t| t.1.is_finite())
+        })
+    };
+    let mut faults = Vec::new();
+    let mut used = std::collections::BTreeSet::new();
+    for kind in brdfbake::tables::TABLES {
+        for layout in kind.layouts {
+            let listed =
+                kinds::WITHOUT.iter().position(|w| w.0 == kind.id && (w.1 == "*" || w.1 == layout.id));
+            used.extend(listed);
+            match (listed, has(kind.id, layout.id)) {
+                (Some(_), true) => {
+                    faults.push(format!("{} {} has truths: take it off WITHOUT", kind.id, layout.id))
+                }
+                (None, false) => faults.push(format!(
+                    "{id} {}: add a rule to tests/sweep/kinds.rs and its draws to KINDS, then `HONESTY_KINDS={id} cargo test --release \
+                        --test baked -- --ignored --exact sweep::compute_truths_of_texels`; or say in WITHOUT why there is none",
+                    layout.id,
+                    id = kind.id
+                )),
+                _ => {}
+            }
+        }
+    }
+    let idle = (0..kinds::WITHOUT.len()).filter(|i| !used.contains(i)).map(|i| kinds::WITHOUT[i]);
+    faults.extend(idle.map(|w| format!("WITHOUT: there is no {} {}", w.0, w.1)));
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// Every model has truths of an independent rule, or is in `truth::WITHOUT` with the reason.
+#[test]
+fn every_model_has_truths() {
+    let rows = rows::read(&folder().join("truth_test.csv"));
+    let mut faults = Vec::new();
+    for info in MODELS {
+        let count = rows.iter().filter(|r| r.model == info.id).count();
+        match (truth::WITHOUT.iter().any(|w| w.0 == info.id), count) {
+            (false, count) if count < 20 => faults.push(format!(
+                "{}: {count} draws; add a rule to tests/sweep/truth.rs and run `HONESTY_SET=test HONESTY_MODELS={} cargo test --release \
+                    --test baked -- --ignored compute_truths`, or say in WITHOUT why there is none",
+                info.id, info.id
+            )),
+            (true, 1..) => faults.push(format!("{} has truths: take it off WITHOUT", info.id)),
+            _ => {}
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// One texel in ten of each kind: none beyond estimate and tolerance, none beyond three estimates.
+#[test]
+fn estimates_of_a_few_texels_of_each_kind_are_honest() {
+    let rows = texel::read(&folder().join("truth_texels.csv"));
+    let mut seen = std::collections::BTreeMap::new();
+    let mut every_tenth = |r: &texel::Row| {
+        let n = seen.entry(texel::label(r)).or_insert(0);
+        *n += 1;
+        *n % 10 == 1
+    };
+    let rows: Vec<texel::Row> = rows.into_iter().filter(|r| every_tenth(r)).collect();
+    let outcomes = texel::run(&rows, &check::TOLERANCES[..2]);
+    let labels: Vec<String> = rows.iter().map(texel::label).collect();
+    let lines = check::lines(&labels, &outcomes);
+    let bad: Vec<_> = lines.iter().filter(|l| l.lies > 0 || l.worst > 3.0 || l.refused > 0).collect();
+    let worst = check::worst(&labels, &outcomes, 3, &|o| texel::words(&rows[o.row]));
+    assert!(bad.is_empty(), "{bad:#?}\n{worst}");
 }
 
 /// Every texel at every tolerance, by kind and layout.

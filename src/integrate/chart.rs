@@ -18,8 +18,8 @@ pub enum Chart {
         alpha: f64,
         /// D vanishes beyond `tan(theta) = reach * alpha`; infinite for a power-law tail.
         reach: f64,
-        /// True if the model has kinks inside the panels (V-cavity masking): convergence is then algebraic, and the
-        /// difference of two levels says less.
+        /// True if the model has kinks inside the panels (V-cavity masking), or a D without bound at the horizon: convergence is then
+        /// slow, and the difference of two levels says less.
         kinks: bool,
         /// Width in `wo . wm` over which the Fresnel factor changes at grazing incidence; infinite if it is smooth there.
         slope: f64,
@@ -70,10 +70,10 @@ impl Chart {
     /// The half-vector chart that facets need: the simple one where it is enough.
     #[must_use]
     pub fn facets(facets: FacetLobe) -> Chart {
-        let FacetLobe { alpha: [x, y], reach, edge, layer, fold, crease, slope } = facets;
+        let FacetLobe { alpha: [x, y], reach, edge, layer, fold, crease, slope, steep } = facets;
         let smith = (layer - 3.0 * x).abs() <= 0.0;
         if (x - y).abs() <= 0.0 && smith && edge == Edge::Layer && !fold && crease.is_none() {
-            return Chart::HalfVector { alpha: x, reach, kinks: false, slope, layer };
+            return Chart::HalfVector { alpha: x, reach, kinks: steep, slope, layer };
         }
         Chart::Ellipse(facets)
     }
@@ -82,8 +82,9 @@ impl Chart {
     #[must_use]
     pub fn creased(self, crease: Option<Crease>) -> Chart {
         match self {
-            Chart::HalfVector { alpha, reach, slope, layer, .. } if crease.is_some() => {
-                Chart::Ellipse(FacetLobe { crease, slope, layer, ..FacetLobe::smith([alpha; 2], reach) })
+            Chart::HalfVector { alpha, reach, slope, layer, kinks } if crease.is_some() => {
+                let facets = FacetLobe::smith([alpha; 2], reach);
+                Chart::Ellipse(FacetLobe { crease, slope, layer, steep: kinks, ..facets })
             }
             Chart::Ellipse(facets) => {
                 Chart::Ellipse(FacetLobe { crease: crease.or(facets.crease), ..facets })

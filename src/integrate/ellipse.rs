@@ -106,6 +106,8 @@ pub struct FacetLobe {
     pub crease: Option<Crease>,
     /// Width in `wo . wm` over which the Fresnel factor changes at grazing incidence; infinite if it is smooth there.
     pub slope: f64,
+    /// True if D grows without bound at the horizon, as tails do that are longer than GGX's: sums converge slowly there.
+    pub steep: bool,
 }
 
 impl FacetLobe {
@@ -113,7 +115,16 @@ impl FacetLobe {
     #[must_use]
     pub fn smith(alpha: [f64; 2], reach: f64) -> FacetLobe {
         let layer = 3.0 * alpha[0].min(alpha[1]);
-        FacetLobe { alpha, reach, edge: Edge::Layer, layer, fold: false, crease: None, slope: f64::INFINITY }
+        FacetLobe {
+            alpha,
+            reach,
+            edge: Edge::Layer,
+            layer,
+            fold: false,
+            crease: None,
+            slope: f64::INFINITY,
+            steep: false,
+        }
     }
 
     /// How far the differences of levels are to be trusted.
@@ -123,6 +134,7 @@ impl FacetLobe {
     pub fn trust(&self) -> Trust {
         let upright = self.alpha[0] >= 1.0 && self.layer < 3.0 * self.alpha[0].min(self.alpha[1]);
         let (gain, memory): (&[f64], &[f64]) = match self.edge {
+            _ if self.steep => (&[0.2], &[0.2]),
             _ if self.fold => (&[0.65, 0.65, 0.55, 0.6, 0.75], &[0.05, 0.05, 0.03, 0.03, 0.01]),
             _ if upright => (&[0.45, 0.45, 0.55, 1.0, 0.6], &[0.1, 0.1, 0.1, 0.05, 0.01]),
             Edge::Root => (&[0.6, 0.6, 2.5, 5.0, 3.5], &[0.1, 0.1, 0.02, 0.008, 0.003]),

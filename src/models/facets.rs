@@ -26,7 +26,7 @@ pub trait Facets: Debug + Send + Sync {
     fn chart(&self) -> Option<Chart>;
 
     /// As [`Brdf::own_error`].
-    fn own_error(&self) -> f64 {
+    fn own_error(&self, _mu_o: f64) -> f64 {
         0.0
     }
 
@@ -102,8 +102,8 @@ impl<L: Facets> Brdf for HalfVectorLobe<L> {
         ))
     }
 
-    fn own_error(&self, _mu_o: f64) -> f64 {
-        if self.flat { 0.0 } else { self.facets.own_error() }
+    fn own_error(&self, mu_o: f64) -> f64 {
+        if self.flat { 0.0 } else { self.facets.own_error(mu_o) }
     }
 
     fn mirror(&self, mu_o: f64) -> Option<f64> {

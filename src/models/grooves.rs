@@ -126,10 +126,11 @@ fn breaks(theta: f64, reach: f64, heights: &[f64]) -> Vec<f64> {
     let mu = libm::cos(theta);
     let mut c = 2.0 * mu;
     while c > 0.0 && c < 0.3 {
-        if c > 1e-9 {
+        if c > 1e-14 {
             all.push(libm::acos(c) - theta);
         }
-        c *= GROWTH;
+        // little is seen of the steepest facets
+        c *= if c < 1e-9 { GROWTH * GROWTH } else { GROWTH };
     }
     // where the horizon of wi passes a height, and where a circle round wo touches it
     all.extend(heights.iter().map(|z| libm::acos((0.5 * mu / z).min(1.0)) - theta));

@@ -167,7 +167,7 @@ impl Facets for Gtr {
         }
     }
 
-    fn own_error(&self) -> f64 {
+    fn own_error(&self, _mu_o: f64) -> f64 {
         ROUNDING / self.alpha
     }
 

@@ -1,6 +1,7 @@
 //! Student's t: the default kernel, which calls the terms node by node.
 
 use super::{Distribution, StudentT};
+use crate::integrate::FacetLobe;
 
 /// Finest scale of the chart at the horizon, in widths.
 const FINEST: f64 = 1e-9;
@@ -8,6 +9,10 @@ const FINEST: f64 = 1e-9;
 impl Distribution for StudentT {
     fn widths(&self) -> [f64; 2] {
         [self.alpha_x(), self.alpha_y()]
+    }
+
+    fn facets(&self) -> FacetLobe {
+        FacetLobe { steep: self.gamma() < 2.0, ..FacetLobe::smith(self.widths(), self.reach()) }
     }
 
     /// A view in the horizon sees facets of all slopes by what they hide: beyond the slope x the part `x^(3 - 2 gamma)`, which
