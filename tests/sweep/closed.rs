@@ -272,10 +272,23 @@ pub(crate) fn conductor(c: f64, n: f64, k: f64) -> [f64; 2] {
 
 fn conductor_channels(t: &Texel, p: &Params) -> Truths {
     let metal = metals::find(p.choice("metal").unwrap());
-    let of = |lambda: f64| {
+    let at = |mu: f64, lambda: f64| {
         let (n, k) = metal.map_or((p.number("n").unwrap(), p.number("k").unwrap()), |m| m.index(lambda));
-        conductor(t.axis("mu"), n, k)
+        conductor(mu, n, k)
     };
+    let of = |lambda: f64| at(t.axis("mu"), lambda);
+    if t.layout == "f82-tint" {
+        // Schlick's curve less what takes it through F at 1/7
+        let tint = |lambda: f64| {
+            let mean = |mu: f64| at(mu, lambda).iter().sum::<f64>() / 2.0;
+            let (f0, edge, mu) = (mean(1.0), 1.0 / 7.0, t.axis("mu"));
+            let schlick = |mu: f64| f0 + (1.0 - f0) * (1.0 - mu).powi(5);
+            let dip = |mu: f64| mu * (1.0 - mu).powi(6);
+            let value = schlick(mu) - (schlick(edge) - mean(edge)) / dip(edge) * dip(mu);
+            (value.clamp(0.0, 1.0), 3e-14)
+        };
+        return metals::RGB_NM.map(tint).to_vec();
+    }
     let all = metals::RGB_NM.map(of);
     let flat: Vec<f64> = if t.layout == "polarised" {
         (0..6).map(|i| all[i % 3][i / 3]).collect()

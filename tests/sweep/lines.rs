@@ -263,8 +263,7 @@ fn importance(t: &Texel) -> Truths {
     let mu = draw.mu;
     let wo = DVec3::new(((1.0 - mu) * (1.0 + mu)).sqrt(), 0.0, mu);
     let theta_o = mu.acos();
-    let alpha = draw.params.number("alpha").unwrap();
-    let alpha = if alpha.is_nan() { 1.0 } else { alpha };
+    let alpha = draw.params.optional("alpha").unwrap_or(1.0);
     let f = |theta: f64, phi: f64| {
         let (sin, cos) = theta.sin_cos();
         model.eval(wo, DVec3::new(sin * phi.cos(), sin * phi.sin(), cos))

@@ -110,7 +110,7 @@ impl Texel {
                 }
             }
         }
-        if white && params.number("f0").unwrap().is_finite() {
+        if white && params.optional("f0").is_some() {
             params.set("f0", 1.0);
             params.set("f90", 1.0);
         }

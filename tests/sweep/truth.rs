@@ -17,6 +17,24 @@ use std::f64::consts::{PI, TAU};
 /// A value and its error, or why there is none.
 pub(crate) type Truth = Result<(f64, f64), &'static str>;
 
+/// Models without draws in `truth_test.csv`, and why.
+pub(crate) const WITHOUT: &[(&str, &str)] = &[
+    (
+        "kelemen-matte",
+        "a lobe over its own albedo, minutes a draw: tests/compensated.rs and the law honest hold it",
+    ),
+    (
+        "kulla-conty",
+        "a curve and its mean for every draw, minutes each: tests/compensated.rs and the law honest hold it",
+    ),
+    ("turquin", "as kulla-conty"),
+    ("fdez-aguera", "as kulla-conty"),
+    (
+        "gltf",
+        "a sum of lobes with the curve of its sheen: its known values are of a nested rule of their own",
+    ),
+];
+
 const INFINITE: &str = "E is infinite at mu = 0";
 
 /// E of a draw.
