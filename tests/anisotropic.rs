@@ -32,6 +32,43 @@ fn check(bound: &Bound, table: Table, tolerance: f64) {
     assert!(others.is_empty(), "{others:?}");
 }
 
+/// glTF's strength and rotation: the widths mix(alpha, 1, s^2) and alpha, the azimuth from the turned tangent.
+#[test]
+fn strength_and_rotation_of_gltf_are_widths_and_an_azimuth() {
+    let axes = |last: &[Axis]| {
+        let mut axes =
+            vec![axis("mu", 3, Texel::Center), axis("roughness", 2, Texel::Endpoint).over([0.4, 0.8])];
+        axes.extend_from_slice(last);
+        axes
+    };
+    let strength = axis("anisotropy", 2, Texel::Endpoint);
+    let phi = axis("phi", 2, Texel::Endpoint).over([0.0, FRAC_PI_2]);
+    let rotation = axis("rotation", 2, Texel::Endpoint).over([0.0, FRAC_PI_2]);
+    let bound = request("dfg", "ggx", "{}", axes(&[strength.clone(), phi.clone()])).unwrap();
+    let turned = request("dfg", "ggx", "{}", axes(&[strength.clone(), rotation])).unwrap();
+    let (alpha, s): (f64, f64) = (0.3, 0.7);
+    let params = format!(r#"{{"alpha_x": {}, "alpha_y": {alpha}}}"#, alpha * (1.0 - s * s) + s * s);
+    let widths = request("dfg", "ggx", &params, vec![axis("mu", 3, Texel::Center), phi.clone()]).unwrap();
+    let value = |bound: &Bound, at: &[f64]| bound.baker.texel(at, 1e-8).unwrap().value;
+    for azimuth in [0.0, 0.6] {
+        let expected = value(&widths, &[0.3, azimuth])[0];
+        near!(value(&bound, &[0.3, alpha, s, azimuth])[0], expected, ASKED_6, "phi {azimuth}");
+        // seen along the tangent of the mesh, the grooves are turned the other way round, which is the same
+        near!(value(&turned, &[0.3, alpha, s, azimuth])[0], expected, ASKED_6, "rotation {azimuth}");
+    }
+    for (params, last) in [
+        (r#"{"alpha_x": 0.3}"#, vec![strength.clone(), phi.clone()]),
+        ("{}", vec![strength.clone(), axis("alpha_x", 2, Texel::Endpoint).over([0.2, 0.7])]),
+    ] {
+        let e = request("dfg", "ggx", params, axes(&last)).unwrap_err();
+        assert!(e.to_string().contains("alpha_x"), "{e}");
+    }
+    let e = request("albedo", "oren-nayar", "{}", vec![axis("mu", 3, Texel::Center), strength]).unwrap_err();
+    assert!(matches!(e, BindError::IdleAxis { axis: "anisotropy", .. }), "{e}");
+    let table = bake(&bound, 1e-4).unwrap();
+    check(&bound, table, 1e-4);
+}
+
 /// The split sum of an anisotropic lobe: over both widths, with one of them fixed, and on the diagonal that of one width.
 #[test]
 fn split_sum_over_view_azimuth_and_both_widths() {

@@ -5,6 +5,7 @@ mod chi2;
 mod common;
 mod compensated;
 mod counted;
+mod distributions;
 mod empirical;
 mod facets_and_cloth;
 mod functions;

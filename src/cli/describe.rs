@@ -157,7 +157,7 @@ fn default_axes(t: &TableInfo) -> String {
     };
     let lines = |layout: &Layout| -> String {
         let layout = Selection::from(layout);
-        let axes = t.default_axes(Setting { layout: &layout, model });
+        let axes = t.default_axes(Setting { layout: &layout, model, given: None });
         let line = |axis: &Axis| {
             let clamp = axis.clamp.map_or_else(String::new, |c| format!(", clamped to {}", interval(c)));
             format!(

@@ -4,6 +4,7 @@
 
 use super::facets::{Facets, HalfVectorLobe};
 use super::microfacet::{self, ALPHA, F0, F90, Fresnel, MASKING, Masking};
+use super::normals::turned_away;
 use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
 use crate::cite;
 use crate::integrate::Chart;
@@ -97,7 +98,7 @@ impl Gtr {
                 let (sin, cos) = libm::sincos(FRAC_PI_2 * x);
                 // 1 - b s^2 cos^2 = mu^2 + alpha^2 s^2 + b s^2 sin^2
                 let base = mu * mu + self.alpha * self.alpha * sin2 + b * sin2 * sin * sin;
-                sum += w * hidden(mu, sin, cos) * sin * libm::pow(base, -self.gamma);
+                sum += w * turned_away(mu, sin, cos) * sin * libm::pow(base, -self.gamma);
             }
         }
         2.0 * FRAC_PI_2 * sin2 * sum * self.norm()
@@ -124,19 +125,6 @@ impl Gtr {
     /// `mu Lambda` of a direction.
     fn masked(&self, w: DVec3) -> f64 {
         self.mu_lambda(w.z, crate::math::frame::sin2_theta(w))
-    }
-}
-
-/// `mu cos x (t - atan t)` with t = tan x / mu, without cancellation for small t.
-fn hidden(mu: f64, sin: f64, cos: f64) -> f64 {
-    if sin < 0.25 * mu * cos {
-        let t = sin / (mu * cos);
-        let t2 = t * t;
-        // t^3/3 - t^5/5 + ..., 14 terms are enough below 1/4
-        let series = (0..14).rev().fold(0.0, |sum: f64, k| 1.0 / f64::from(2 * k + 3) - t2 * sum);
-        mu * cos * t * t2 * series
-    } else {
-        sin - mu * cos * libm::atan2(sin, mu * cos)
     }
 }
 

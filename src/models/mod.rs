@@ -53,6 +53,7 @@ pub mod ltc_sheen;
 pub mod microfacet;
 pub mod minnaert;
 pub mod mirror;
+pub mod normals;
 pub mod oren_nayar;
 pub mod oren_nayar_full;
 pub mod param;

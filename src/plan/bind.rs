@@ -258,7 +258,11 @@ impl<'a> Binder<'a> {
     fn add_axis(&mut self, base: &str) -> bool {
         let own = tables::find(&self.request.kind).and_then(|kind| {
             let layout = Selection::from(kind.layouts.first()?);
-            let axes = kind.default_axes(Setting { layout: &layout, model: None });
+            let axes = kind.default_axes(Setting {
+                layout: &layout,
+                model: None,
+                given: Some(&self.request.params),
+            });
             axes.into_iter().find(|a| a.quantity.base_id() == base)
         });
         match (self.request.axes.as_mut(), own) {

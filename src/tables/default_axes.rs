@@ -7,6 +7,7 @@
 use super::{ModelUse, Selection, TableInfo};
 use crate::grid::{Axis, Direction, Quantity, Texel, Warp};
 use crate::models::{ModelInfo, Param};
+use serde_json::{Map, Value as Json};
 
 /// What default axes are chosen for.
 #[derive(Debug, Clone, Copy)]
@@ -15,6 +16,8 @@ pub struct Setting<'a> {
     pub layout: &'a Selection,
     /// The model, for kinds that have one.
     pub model: Option<&'static ModelInfo>,
+    /// The parameters that are given.
+    pub given: Option<&'a Map<String, Json>>,
 }
 
 impl Setting<'_> {
@@ -22,6 +25,12 @@ impl Setting<'_> {
     #[must_use]
     pub fn holds(&self, channel: &str) -> bool {
         self.layout.ids().any(|id| id == channel)
+    }
+
+    /// The word that is given for a choice.
+    #[must_use]
+    pub fn chosen(&self, id: &str) -> Option<&str> {
+        self.given?.get(id)?.as_str()
     }
 }
 

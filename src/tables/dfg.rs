@@ -143,7 +143,7 @@ pub static INFO: TableInfo = TableInfo {
     axes: default_axes,
     least_tolerance: |_| 0.0,
     blended: true,
-    notes: "Anisotropic: axes mu, phi (the view azimuth), alpha_x and alpha_y; a width may be a parameter. alpha = 0 is the mirror: scale = 1 - (1 - mu)^5, bias = (1 - mu)^5. cloth grows as 1 / sqrt(2 pi alpha) where mu and \
+    notes: "Anisotropic: axes mu, phi (the view azimuth), alpha_x and alpha_y; a width may be a parameter; or mu, phi, roughness and anisotropy (glTF's strength; rotation turns phi). alpha = 0 is the mirror: scale = 1 - (1 - mu)^5, bias = (1 - mu)^5. cloth grows as 1 / sqrt(2 pi alpha) where mu and \
         alpha go to 0 (9 in Filament's first texel), and diffuse exceeds 1 on rough surfaces at grazing: half floats hold them, \
         fixed point spreads its steps over their range.",
     bind,
@@ -232,7 +232,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
         (None, Some(alpha)) => Err(alpha),
         (None, None) => Ok(spec.coordinate("alpha")?),
     };
-    let widths = ["alpha_x", "alpha_y"].map(|id| spec.axis(id).is_some());
+    let widths = ["alpha_x", "alpha_y", "anisotropy"].map(|id| spec.axis(id).is_some());
     if widths.contains(&true) && parts.iter().any(|p| matches!(p, Part::Lobe(_) | Part::Kept(..))) {
         let why = "has two widths here, but cloth and diffuse go with one alpha; take a layout without them";
         let model = sweep.info().id.to_owned();

@@ -179,10 +179,10 @@ fn default_axes(setting: &Setting<'_>) -> Vec<Axis> {
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     // seen askew, an anisotropic lobe is not even in y and has no matrix of this form
-    if spec.axis("phi").is_some() {
+    if let Some(axis) = ["phi", "rotation"].into_iter().find(|id| spec.axis(id).is_some()) {
         let allowed =
             "mu and the numbers of the model: the lobe must be even about the plane of view".to_owned();
-        return Err(BindError::IdleAxis { kind: INFO.id, axis: "phi", allowed });
+        return Err(BindError::IdleAxis { kind: INFO.id, axis, allowed });
     }
     let splits = spec.model.as_ref().is_some_and(|(info, _)| info.splits);
     let sweep = Sweep::new(spec, splits)?;
@@ -249,6 +249,12 @@ impl Baker for Matrix {
         format!("Newton's method on nodes of the model's chart and of the lobe; chart: {}", self.sweep.rule())
     }
 
+    fn distance(&self, at: &[f64], values: &[f64]) -> Option<[f64; 2]> {
+        let inverse = stored(&self.roles, values)?;
+        let (fit, _) = ltc_fit::judged(&*self.sweep.model(at).ok()?, self.sweep.view(at), &inverse).ok()?;
+        Some([fit.l3, 2.0 * fit.variation])
+    }
+
     fn residuals(&self, table: &Table) -> Vec<Residual> {
         let judged: Vec<Option<[f64; 2]>> =
             (0..table.grid.len()).into_par_iter().map(|texel| self.judge(table, texel)).collect();
@@ -274,11 +280,8 @@ impl Baker for Matrix {
 impl Matrix {
     /// L3 error and total variation of the matrix of a texel, if the table holds one.
     fn judge(&self, table: &Table, texel: usize) -> Option<[f64; 2]> {
-        let inverse = stored(&self.roles, table.at(texel))?;
-        let point = table.grid.texel(texel);
-        let model = self.sweep.model(point.values()).ok()?;
-        let (fit, _) = ltc_fit::judged(&*model, self.sweep.view(point.values()), &inverse).ok()?;
-        Some([fit.l3, fit.variation])
+        let [l3, l1] = self.distance(table.grid.texel(texel).values(), table.at(texel))?;
+        Some([l3, 0.5 * l1])
     }
 }
 

@@ -30,6 +30,7 @@ mod memo;
 pub mod merl;
 pub mod metal;
 pub mod ndf;
+pub mod normals;
 mod parts;
 pub mod phase_function;
 pub mod phase_sampling;
@@ -47,6 +48,7 @@ pub mod source;
 pub mod spec;
 pub mod spectrum;
 pub mod sweep;
+mod sweepable;
 pub mod thin_film;
 pub mod visibility;
 
@@ -129,6 +131,12 @@ pub trait Baker: Send + Sync {
 
     /// Turns the channels at a point into [`Baker::decoded`], in place.
     fn decode(&self, _at: &[f64], _values: &mut crate::integrate::Sums) {}
+
+    /// Where the channels are the parameters of a lobe: how far the lobe of these values is from the model at a point, as L3 and L1
+    /// error.
+    fn distance(&self, _at: &[f64], _values: &[f64]) -> Option<[f64; 2]> {
+        None
+    }
 
     /// What the values themselves leave open where they are parameters of a fit: how far the fits are from what they were
     /// fitted to. Empty for tables of exact values.

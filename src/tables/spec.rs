@@ -1,9 +1,9 @@
 //! A table with everything resolved: kind, layout, model, parameters, axes.
 
+use super::sweepable::check_axes;
 use super::{Baker, ModelUse, Selection, Setting, TableInfo, default_axes};
-use crate::grid::quantity::QUANTITIES;
-use crate::grid::{Axis, Channel, Grid, GridError, Quantity};
-use crate::models::{self, ModelInfo, Param, ParamError, Params};
+use crate::grid::{Axis, Channel, Grid, GridError};
+use crate::models::{self, ModelInfo, ParamError, Params};
 use serde_json::{Map, Value as Json};
 
 /// A resolved table: what [`TableInfo::bind`] takes and what metadata is written from.
@@ -177,7 +177,7 @@ impl Request {
         let layout = Selection::resolve(kind, self.layout.as_deref(), self.channels.as_deref())?;
         let (model, model_params, table_params) = self.split_params(kind)?;
         let info = model.map(|(info, _)| info);
-        let setting = Setting { layout: &layout, model: info };
+        let setting = Setting { layout: &layout, model: info, given: Some(&self.params) };
         let axes = self.axes.clone().unwrap_or_else(|| kind.default_axes(setting));
         if let Some(info) = info.filter(|_| self.axes.is_none() && axes.is_empty()) {
             let why =
@@ -236,7 +236,7 @@ impl Spec {
     /// What default axes and tolerances are chosen for.
     #[must_use]
     pub fn setting(&self) -> Setting<'_> {
-        Setting { layout: &self.layout, model: self.model.as_ref().map(|(info, _)| *info) }
+        Setting { layout: &self.layout, model: self.model.as_ref().map(|(info, _)| *info), given: None }
     }
 
     /// Ids of the parameters that an axis sets: those it sweeps, and those that follow a swept one.
@@ -253,6 +253,9 @@ impl Spec {
                     |a: &str, b: &str| Some((params.number(a).ok()? - params.number(b).ok()?).abs() == 0.0);
                 let follows = |id: &&str| same(id, leader) == Some(true);
                 ids.extend(info.followers(leader).filter(follows));
+            }
+            if ids.contains(&"anisotropy") {
+                ids.push("alpha_x");
             }
         }
         ids
@@ -309,7 +312,7 @@ impl Spec {
     }
 }
 
-fn axis_ids(grid: &Grid) -> String {
+pub(super) fn axis_ids(grid: &Grid) -> String {
     grid.axes().iter().map(|a| a.quantity.id).collect::<Vec<_>>().join(", ")
 }
 
@@ -324,74 +327,4 @@ pub(super) fn unknown<'a>(
         allowed: ids.clone().collect::<Vec<_>>().join(", "),
         suggestion: crate::math::nearest::nearest(got, ids).map(str::to_owned),
     }
-}
-
-fn check_axes(
-    kind: &'static TableInfo,
-    grid: &Grid,
-    model: Option<&(&'static ModelInfo, Params)>,
-    given: &Map<String, Json>,
-) -> Result<(), BindError> {
-    let bases: Vec<&'static str> = grid.axes().iter().map(|a| a.quantity.base_id()).collect();
-    // a coordinate that is a parameter of the model may be given as one: the table is a row of it
-    let fixed = |needed: &str| {
-        let param = model.and_then(|(info, _)| info.measured(needed));
-        param.is_some_and(|p| given.keys().any(|key| p.is_called(key)))
-    };
-    // both widths stand for the one that they follow, swept or given
-    let followed = |needed: &str| {
-        let Some((info, _)) = model else { return false };
-        let told = |id: &str| bases.contains(&id) || given.keys().any(|key| key == id);
-        let mut followers = info.measured(needed).into_iter().flat_map(|p| info.followers(p.id)).peekable();
-        followers.peek().is_some() && followers.all(told)
-    };
-    for needed in kind.coordinates {
-        if !bases.contains(needed) && !fixed(needed) && !followed(needed) {
-            let got = axis_ids(grid);
-            return Err(BindError::MissingAxis { kind: kind.id, needed, got });
-        }
-    }
-    let numbers: Vec<&Param> = model
-        .iter()
-        .flat_map(|(info, _)| info.params)
-        .chain(kind.params)
-        .filter(|p| matches!(p.kind, models::Kind::Number { .. }))
-        // where the Fresnel factor is split off, F is 1
-        .filter(|p| !(matches!(kind.model, ModelUse::Split(_)) && ["f0", "f90"].contains(&p.id)))
-        .collect();
-    // a view has an azimuth where it has a cosine
-    let azimuth: &[&str] = if model.is_some() && kind.coordinates.contains(&"mu") { &["phi"] } else { &[] };
-    for (axis, base) in grid.axes().iter().zip(&bases) {
-        let number = numbers.iter().find(|p| p.is_measured_by(base));
-        if !kind.coordinates.contains(base) && number.is_none() && !azimuth.contains(base) {
-            let allowed = sweepable(&[kind.coordinates, azimuth].concat(), &numbers);
-            return Err(BindError::IdleAxis { kind: kind.id, axis: axis.quantity.id, allowed });
-        }
-        let same = |key: &&String| key.as_str() == *base || number.is_some_and(|p| p.is_called(key));
-        if let Some(key) = given.keys().find(same) {
-            return Err(BindError::Both { kind: kind.id, key: key.clone() });
-        }
-    }
-    for (i, axis) in grid.axes().iter().enumerate() {
-        let same = |p: &&&Param| p.is_measured_by(bases[i]);
-        let Some(param) = numbers.iter().find(same).filter(|_| !kind.coordinates.contains(&bases[i])) else {
-            continue;
-        };
-        if let Some(other) = bases[..i].iter().position(|b| param.is_measured_by(b)) {
-            let axes = [grid.axes()[other].quantity.id, axis.quantity.id];
-            return Err(BindError::OneParam { kind: kind.id, axes, param: param.id });
-        }
-    }
-    Ok(())
-}
-
-/// The axes that there are for these base quantities and parameters, by the names that a recipe has for them.
-fn sweepable(bases: &[&str], numbers: &[&Param]) -> String {
-    let measures = |base: &str| bases.contains(&base) || numbers.iter().any(|p| p.is_measured_by(base));
-    let known = QUANTITIES.iter().filter(|q| {
-        measures(q.base_id())
-            || (Quantity::own(q.id).is_some() && numbers.iter().any(|p| p.is_measured_by(q.id)))
-    });
-    let ids: Vec<&str> = known.map(|q| q.id).collect();
-    if ids.is_empty() { "nothing".to_owned() } else { ids.join(", ") }
 }

@@ -6,6 +6,7 @@ use crate::integrate::{Estimate, View};
 use crate::math::lanes::LANES;
 use crate::models::integral::integrate_four;
 use crate::models::{Brdf, Functional, ModelInfo, Params};
+use std::f64::consts::TAU;
 
 /// Models with their integrals.
 pub type Four = Vec<(Box<dyn Brdf>, Result<Estimate, TexelError>)>;
@@ -19,6 +20,10 @@ pub struct Sweep {
     mu: Option<usize>,
     /// Axis number of the view azimuth, if one sweeps it.
     phi: Option<usize>,
+    /// Axis number of the rotation of the tangent, if one sweeps it.
+    rotation: Option<usize>,
+    /// Axis number of glTF's strength of anisotropy, if one sweeps it.
+    anisotropy: Option<usize>,
     /// Axis number and parameter id of the swept parameters.
     swept: Vec<(usize, &'static str)>,
 }
@@ -36,11 +41,14 @@ impl Sweep {
             params.set("f0", 1.0);
             params.set("f90", 1.0);
         }
-        let mut sweep = Sweep { info, params, mu: None, phi: None, swept: Vec::new() };
+        let mut sweep =
+            Sweep { info, params, mu: None, phi: None, rotation: None, anisotropy: None, swept: Vec::new() };
         for (i, axis) in spec.grid.axes().iter().enumerate() {
             match axis.quantity.base_id() {
                 "mu" => sweep.mu = Some(i),
                 "phi" => sweep.phi = Some(i),
+                "rotation" => sweep.rotation = Some(i),
+                "anisotropy" => sweep.anisotropy = Some(i),
                 // an axis that the model has no parameter for is one of the table kind
                 id => sweep.swept.extend(info.measured(id).map(|p| (i, p.id))),
             }
@@ -60,10 +68,11 @@ impl Sweep {
         self.mu.map_or(1.0, |i| at[i])
     }
 
-    /// View at a point: its cosine, and its azimuth (0 if no axis sweeps it).
+    /// View at a point: its cosine, and its azimuth from the tangent of the grooves (0 if no axis sweeps it).
     #[must_use]
     pub fn view(&self, at: &[f64]) -> View {
-        View { mu: self.mu(at), phi: self.phi.map_or(0.0, |i| at[i]) }
+        let phi = self.phi.map_or(0.0, |i| at[i]) - self.rotation.map_or(0.0, |i| at[i]);
+        View { mu: self.mu(at), phi: if phi < 0.0 { phi + TAU } else { phi } }
     }
 
     /// Parameters at a point.
@@ -81,6 +90,11 @@ impl Sweep {
                     params.set(other, at[i]);
                 }
             }
+        }
+        if let Some(i) = self.anisotropy {
+            let (alpha, strength) = (params.number("alpha")?, at[i]);
+            params.set("alpha_x", alpha + (1.0 - alpha) * strength * strength);
+            params.set("alpha_y", alpha);
         }
         Ok(params)
     }

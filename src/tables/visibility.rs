@@ -1,27 +1,40 @@
 //! Visibility V = G2 / (4 mu_o mu_i) of a rough surface over both cosines, and G2 itself.
 
-use super::masking::{DISTRIBUTION, SCHLICK, direction, schlick};
+use super::masking::{DISTRIBUTION, Masking, Number, SOURCES, charlie_hidden};
+use super::normals::{ALPHA, EXPONENT, GAMMA};
 use super::{
     Baker, BindError, ChannelInfo, Layout, Mix, ModelUse, Role, Setting, Source, Spec, TableInfo, TexelError,
 };
 use crate::cite;
 use crate::grid::{Axis, Warp};
-use crate::integrate::{Estimate, MAX_CHANNELS};
-use crate::models::{Param, Preset};
-use crate::terms::schlick_masking;
-use crate::terms::smith::Ndf;
-use crate::terms::{beckmann::Beckmann, ggx::Ggx};
+use crate::integrate::Estimate;
+use crate::math::frame;
+use crate::models::normals::{Pair, direction};
+use crate::models::{Param, Preset, normals};
+use crate::terms::{schlick_masking, vcavity};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// Masking of each direction, and how the two go together.
+const ALL_SOURCES: [Source; SOURCES.len() + 1] = {
+    let both = Source::new(cite::HEITZ_2014, "Eq. 98 (separable), Eq. 99 (correlated)")
+        .when("distribution", &normals::IDS);
+    let mut all = [both; SOURCES.len() + 1];
+    let mut i = 0;
+    while i < SOURCES.len() {
+        all[i] = SOURCES[i];
+        i += 1;
+    }
+    all
+};
 
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
     id: "visibility",
     title: "Visibility V and masking-shadowing G2",
-    formula: "V = G2 / (4 mu_o mu_i); correlated: G2 = 1 / (1 + Lambda_o + Lambda_i), separable: G2 = G1(mu_o) G1(mu_i)",
-    sources: &[
-        Source::new(cite::HEITZ_2014, "Eq. 98 (separable), Eq. 99 (correlated)")
-            .when("distribution", &["ggx", "beckmann"]),
-        Source::new(cite::SCHLICK_1994, "Eq. 19 (number recalled)").when("distribution", SCHLICK),
-    ],
+    formula: "V = G2 / (4 mu_o mu_i); correlated: G2 = 1 / (1 + Lambda_o + Lambda_i), separable: G2 = G1(mu_o) G1(mu_i); V-cavities: \
+        G2 = min(1, 2 h.z mu_o / (wo . h), 2 h.z mu_i / (wi . h))",
+    sources: &ALL_SOURCES,
     coordinates: &["mu", "mu_i"],
     layouts: &[
         Layout {
@@ -50,24 +63,36 @@ pub static INFO: TableInfo = TableInfo {
     params: &[
         DISTRIBUTION,
         Param::choice("masking", "how the two directions go together", &["correlated", "separable"]),
-        Param::number("alpha", "alpha", "width of the distribution", [0.0, 2.0], Preset::Value(0.25)),
+        ALPHA,
+        GAMMA,
+        EXPONENT,
+        Param {
+            unit: "rad",
+            ..Param::number(
+                "phi",
+                "phi",
+                "of vcavity: azimuth between both directions; pi is the plane of incidence",
+                [0.0, 2.0 * PI],
+                Preset::Value(PI),
+            )
+        },
     ],
     laws: &["finite", "range", "honest"],
     axes: default_axes,
     least_tolerance: |_| 0.0,
     blended: true,
     notes: "V is symmetric. Where both cosines are 0 the correlated form counts as 0: there is no reflection. Schlick's form is separable. \
-        Axes: mu, mu_i and alpha or roughness.",
+        Axes: mu, mu_i, alpha or roughness (n of blinn-phong), gamma of student-t and gtr; phi of vcavity, which has no width and one form.",
     bind,
 };
 
 fn default_axes(setting: &Setting<'_>) -> Vec<Axis> {
-    let mut axes = super::masking::axes(&["mu", "mu_i"], 32, 16, [0.1, 1.0]);
+    let mut axes = super::masking::axes(&["mu", "mu_i"], 32, 16, [0.1, 1.0], setting);
     if setting.layout.id != "g2" {
         for axis in &mut axes {
             if axis.quantity.base_id() == "alpha" {
                 axis.warp = Warp::Power(0.5);
-            } else {
+            } else if axis.quantity.id != "n" {
                 // where both cosines are 0 there is no value
                 axis.domain = [0.01, 1.0];
             }
@@ -79,9 +104,8 @@ fn default_axes(setting: &Setting<'_>) -> Vec<Axis> {
 struct Table {
     mu_o: usize,
     mu_i: usize,
-    axis: Option<usize>,
-    alpha: f64,
-    distribution: &'static str,
+    phi: Number,
+    masking: Masking,
     correlated: bool,
     visibility: bool,
 }
@@ -90,46 +114,72 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
     Ok(Box::new(Table {
         mu_o: spec.coordinate("mu")?,
         mu_i: spec.coordinate("mu_i")?,
-        axis: spec.axis("alpha"),
-        alpha: spec.params.number("alpha")?,
-        distribution: spec.params.choice("distribution")?,
+        phi: Number::of(spec, "phi")?,
+        masking: Masking::new(spec, &["phi"])?,
         correlated: spec.params.choice("masking")? == "correlated",
         visibility: spec.roles().contains(&Role::Visibility),
     }))
 }
 
 impl Table {
-    fn value(&self, mu_o: f64, mu_i: f64, alpha: f64) -> f64 {
-        let (wo, wi) = (direction(mu_o), direction(mu_i));
-        if let Some(k) = schlick(self.distribution, alpha) {
-            return if self.visibility {
-                schlick_masking::visibility(k, mu_o, mu_i)
-            } else {
-                schlick_masking::g1(k, mu_o) * schlick_masking::g1(k, mu_i)
-            };
+    /// Value and error, from cosines and the hidden areas of both.
+    fn of(&self, mu: [f64; 2], hidden: [[f64; 2]; 2]) -> [f64; 2] {
+        let above = if self.visibility { 0.25 } else { mu[0] * mu[1] };
+        let [value, error] = Pair { mu, hidden }.over(self.correlated, above);
+        let g1 = |i: usize| mu[i] / (mu[i] + hidden[i][0]);
+        // the same, as a product
+        [if self.visibility || self.correlated { value } else { g1(0) * g1(1) }, error]
+    }
+
+    fn rational(&self, k: f64, [mu_o, mu_i]: [f64; 2]) -> f64 {
+        if self.visibility {
+            schlick_masking::visibility(k, mu_o, mu_i)
+        } else {
+            schlick_masking::g1(k, mu_o) * schlick_masking::g1(k, mu_i)
         }
-        let ndf: &dyn Ndf = match self.distribution {
-            "beckmann" => &Beckmann::isotropic(alpha),
-            _ => &Ggx::isotropic(alpha),
-        };
-        match (self.visibility, self.correlated) {
-            (true, true) => ndf.visibility(wo, wi),
-            (true, false) => ndf.visibility_separable(wo, wi),
-            (false, true) => ndf.g2(wo, wi),
-            (false, false) => ndf.g2_separable(wo, wi),
+    }
+
+    /// Of V-shaped grooves, whose facets are the half vectors; 0 where a cosine is.
+    fn grooves(&self, [mu_o, mu_i]: [f64; 2], phi: f64) -> f64 {
+        let (sin, cos) = libm::sincos(phi);
+        let (wo, flat) = (direction(mu_o), direction(mu_i));
+        let wi = DVec3::new(flat.x * cos, flat.x * sin, flat.z);
+        let Some(h) = frame::half_vector(wo, wi) else { return 0.0 };
+        let g2 = vcavity::g2(wo, wi, h.wh, h.cos_d);
+        let both = mu_o * mu_i;
+        match self.visibility {
+            false => g2,
+            true if both > 0.0 => 0.25 * g2 / both,
+            true => 0.0,
         }
     }
 }
 
 impl Baker for Table {
-    fn texel(&self, at: &[f64], _tolerance: f64) -> Result<Estimate, TexelError> {
-        let alpha = self.axis.map_or(self.alpha, |i| at[i]);
-        let mut value = [0.0; MAX_CHANNELS];
-        value[0] = self.value(at[self.mu_o], at[self.mu_i], alpha);
-        super::closed_form(value, 1)
+    fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
+        let mu = [at[self.mu_o], at[self.mu_i]];
+        let mut evaluations = 1;
+        let [value, error] = match &self.masking {
+            Masking::Smith(swept) => {
+                let shape = swept.shape(at)?;
+                let both = mu.map(|mu| swept.normals().hidden(shape, mu, 0.1 * tolerance));
+                evaluations = both[0].evaluations.max(both[1].evaluations);
+                self.of(mu, both.map(|e| [e.value[0], e.error[0]]))
+            }
+            Masking::Rational(k, alpha) => [self.rational(schlick_masking::k(*k, alpha.at(at)), mu), 0.0],
+            Masking::Charlie(alpha) => {
+                let alpha = alpha.at(at);
+                self.of(mu, [[charlie_hidden(alpha, mu[0])?, 0.0], [charlie_hidden(alpha, mu[1])?, 0.0]])
+            }
+            Masking::Grooves => [self.grooves(mu, self.phi.at(at)), 0.0],
+        };
+        let mut e = Estimate::exact_one(value);
+        e.error[0] += error;
+        e.evaluations = evaluations;
+        super::finite(e, 1)
     }
 
     fn rule(&self) -> String {
-        "closed form".to_owned()
+        self.masking.rule()
     }
 }

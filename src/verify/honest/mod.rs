@@ -18,6 +18,7 @@ mod models;
 mod normals;
 mod profiles;
 mod quad;
+mod shapes;
 mod sphere;
 mod strata;
 mod weight;

@@ -1,6 +1,7 @@
 //! Distributions of normals by their slopes, and Smith's masking by the integral that defines it, not by its closed form.
 
 use super::quad;
+use super::shapes::Shape;
 use super::{Asked, Truth};
 use crate::tables::Role;
 use std::f64::consts::{FRAC_1_PI, PI};
@@ -18,6 +19,8 @@ enum Normals {
     Beckmann,
     /// Schlick's rational masking, with its k.
     Rational(f64),
+    /// Another distribution, with its exponent of the tail.
+    Other(Shape, f64),
 }
 
 impl Normals {
@@ -29,7 +32,7 @@ impl Normals {
             "schlick-ibl" => Normals::Rational(0.5 * alpha),
             "schlick-analytic" => Normals::Rational((roughness + 1.0) * (roughness + 1.0) / 8.0),
             "schlick" => Normals::Rational(alpha * (2.0 * FRAC_1_PI).sqrt()),
-            _ => return None,
+            word => Normals::Other(Shape::named(word)?, asked.number("gamma")?),
         })
     }
 
@@ -46,6 +49,10 @@ impl Normals {
             }
             Normals::Beckmann => Some((0.0, 0.0)),
             Normals::Rational(_) => None,
+            Normals::Other(shape, gamma) => {
+                let (value, error) = shape.density(mu, alpha, gamma)?;
+                Some((value * PI * alpha * alpha, error))
+            }
         }
     }
 
@@ -76,6 +83,10 @@ impl Normals {
     fn over_masking(self, mu: f64, alpha: f64) -> (f64, f64) {
         match self {
             Normals::Rational(k) => (mu * (1.0 - k) + k, ROUNDING),
+            Normals::Other(shape, gamma) => {
+                let (hidden, error) = shape.hidden(mu, alpha, gamma);
+                (mu + hidden, error + ROUNDING * (mu + hidden))
+            }
             _ => {
                 let (hidden, error) = self.hidden(mu, alpha);
                 (mu + hidden, error + ROUNDING * (mu + hidden))
@@ -88,12 +99,25 @@ impl Normals {
 pub(super) fn truth(role: Role, asked: &Asked<'_>) -> Option<Truth> {
     let spec = asked.spec;
     let at = |id: &str| spec.axis(id).map(|i| asked.at[i]);
-    let alpha = || at("alpha").or_else(|| spec.params.number("alpha").ok());
+    if spec.params.choice("distribution") == Ok("vcavity") {
+        return grooves(role, asked);
+    }
+    let width = if spec.params.choice("distribution") == Ok("blinn-phong") { "n" } else { "alpha" };
+    let alpha = || asked.number(width);
     match role {
         Role::Distribution { relative } => {
             let (mu, alpha) = (at("mu_m")?, alpha()?);
-            let (value, error) = Normals::of(asked, alpha)?.relative(mu, alpha)?;
-            let peak = if relative { 1.0 } else { FRAC_1_PI / (alpha * alpha) };
+            let normals = Normals::of(asked, alpha)?;
+            let (value, error) = normals.relative(mu, alpha)?;
+            let peak = match normals {
+                Normals::Other(shape, gamma) if relative => {
+                    let (unit, of) = shape.density(shape.unit_at(), alpha, gamma)?;
+                    let value = value * FRAC_1_PI / (alpha * alpha) / unit;
+                    return Some(Truth { value, error: (error + of) * value });
+                }
+                _ if relative => 1.0,
+                _ => FRAC_1_PI / (alpha * alpha),
+            };
             Some(Truth { value: value * peak, error: error * value * peak })
         }
         Role::DistributionRoot => {
@@ -110,6 +134,42 @@ pub(super) fn truth(role: Role, asked: &Asked<'_>) -> Option<Truth> {
         Role::MaskingShadowing | Role::Visibility => pair(role, asked, [at("mu")?, at("mu_i")?], alpha()?),
         _ => None,
     }
+}
+
+impl Asked<'_> {
+    /// A number of the kind, on an axis or fixed.
+    fn number(&self, id: &str) -> Option<f64> {
+        self.spec.number(id, self.at).ok()
+    }
+}
+
+/// V-shaped grooves by the sums of cosines: `h.z / (w . h) = (mu_o + mu_i) / (1 + wo . wi)`.
+fn grooves(role: Role, asked: &Asked<'_>) -> Option<Truth> {
+    let (mu, phi) = (asked.number("mu").or_else(|| axis(asked, "mu"))?, asked.number("phi")?);
+    let sine = |mu: f64| ((1.0 - mu) * (1.0 + mu)).sqrt();
+    let together = |other: f64| mu * other + sine(mu) * sine(other) * libm::cos(phi);
+    let truth = |value: f64, room: f64| Truth { value, error: value * ROUNDING * (1.0 + 1.0 / room) };
+    if role == Role::Masking {
+        let mu_m = asked.number("mu_m")?;
+        let cosine = together(mu_m);
+        let seen = if cosine > 0.0 { (2.0 * mu_m * mu / cosine).min(1.0) } else { 0.0 };
+        // at the edge of what is seen a rounding decides
+        return (cosine.abs() > 1e-9).then(|| truth(seen, cosine.abs()));
+    }
+    let other = axis(asked, "mu_i")?;
+    let room = 1.0 + together(other);
+    let g2 = (2.0 * mu.min(other) * (mu + other) / room).min(1.0);
+    let both = mu * other;
+    match role {
+        Role::Visibility if both > 0.0 => Some(truth(0.25 * g2 / both, room)),
+        Role::MaskingShadowing if room > 1e-9 => Some(truth(g2, room)),
+        _ => None,
+    }
+}
+
+/// The base value of an axis.
+fn axis(asked: &Asked<'_>, id: &str) -> Option<f64> {
+    asked.spec.axis(id).map(|i| asked.at[i])
 }
 
 /// `above / below` where the latter has an error; 0 / 0 is 0.
