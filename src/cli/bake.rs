@@ -158,7 +158,8 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         (entry, job.plan)
     };
     let settings = args.settings();
-    if let Some(exit) = args.step.check(&plan, &args.out, args.message_format, args.quiet)? {
+    let asked = [args.limits.jobs().is_some(), !args.scene.is_empty()];
+    if let Some(exit) = args.step.check(&plan, &args.out, args.message_format, args.quiet, asked)? {
         return Ok(exit);
     }
     if args.dry_run {

@@ -21,16 +21,22 @@ pub(super) struct BuildStep {
 }
 
 impl BuildStep {
-    /// With `--check`, how it ends.
+    /// With `--check`, how it ends; are there jobs, and a scene?
     pub(super) fn check(
         &self,
         plan: &Plan,
         out: &Path,
         format: Format,
         quiet: bool,
+        [jobs, scene]: [bool; 2],
     ) -> Result<Option<Exit>, Failure> {
         if !self.check {
             return Ok(None);
+        }
+        if jobs && !scene {
+            let why =
+                "--check bakes nothing; --jobs has an effect with --scene alone, whose textures are read";
+            return Err(Failure::usage(why.to_owned()));
         }
         let why: Vec<String> = fresh::stale(plan, out).iter().map(ToString::to_string).collect();
         let lines: Vec<String> = why.iter().map(|w| format!("stale: {w}")).collect();

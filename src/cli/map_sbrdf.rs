@@ -36,9 +36,48 @@ pub(super) struct Lobes {
     #[arg(long, value_name = "NAME", default_value = "B", requires = "sbrdf")]
     metallic_channel: String,
     /// A tabulated BRDF in place of the maps: a file of the MERL database, or of the container `merl`.
-    #[arg(long, value_name = "FILE", requires = "sbrdf", conflicts_with_all = ["base_color", "metallic", "normal", "roughness"])]
+    #[arg(long, value_name = "FILE", requires = "sbrdf", conflicts_with_all = MEASURED_NOT)]
     brdf: Option<PathBuf>,
 }
+
+/// What a measured BRDF does nothing with: it has one lobe for all texels, and no maps. `requires` is silent where what is required is
+/// refused.
+const MEASURED_NOT: [&str; 34] = [
+    "base_color",
+    "base_color_linear",
+    "metallic",
+    "metallic_channel",
+    "normal",
+    "normal_channels",
+    "green_down",
+    "derive_z",
+    "signed",
+    "normal_scale",
+    "mend_normals",
+    "resample",
+    "wrap",
+    "normal_storage",
+    "roughness",
+    "roughness_storage",
+    "channel",
+    "gloss",
+    "srgb",
+    "from",
+    "second_channel",
+    "angle_channel",
+    "range",
+    "log",
+    "formula",
+    "factor",
+    "single",
+    "gltf",
+    "rule",
+    "normals",
+    "anisotropic",
+    "exact",
+    "objective",
+    "compare",
+];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Model {

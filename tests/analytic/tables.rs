@@ -53,6 +53,26 @@ fn a_mean_over_one_axis_agrees_with_the_closed_form() {
     }
 }
 
+/// The matrices of transformed cosines are judged by how far their lobes are from the model, not by their entries.
+#[test]
+fn matrices_are_judged_by_their_lobes() {
+    let mu = axis("mu", 8, Texel::Endpoint).over([0.2, 1.0]);
+    let bound = request("ltc-matrix", "over-m22", r#"{"alpha": 0.3}"#, vec![mu]);
+    let [coarse, fine] = [1, 4].map(|degree| table(&bound, Form::Polynomial, degree).unwrap());
+    let lobes = |fit: &Fit| fit.lobes.unwrap()[0].errors;
+    for fit in [&coarse, &fine] {
+        let [l3, l1] = lobes(fit);
+        assert!(l3.nearest > 0.0 && l1.nearest > 0.0 && l1.fitted < 2.0, "{l3:?} {l1:?}");
+        // no lobe is nearer than the nearest
+        assert!(l3.added >= 0.0 && l3.fitted >= l3.nearest - 1e-4, "{l3:?}");
+        assert!((fit.largest(false) - l3.added).abs() <= 0.0, "{l3:?}");
+        assert!(fit.code(Lang::Glsl).contains("// Lobes, whole domain: L3 "), "{}", fit.code(Lang::Glsl));
+    }
+    assert!(lobes(&fine)[0].added < 0.2 * lobes(&coarse)[0].added, "{:?} {:?}", lobes(&fine), lobes(&coarse));
+    let none = of("average-albedo", "e-avg", Form::Polynomial, 2);
+    assert!(none.lobes.is_none());
+}
+
 #[test]
 fn what_cannot_be_fitted_is_refused() {
     let three = vec![

@@ -152,6 +152,25 @@ const MODES: &[(&str, &[&str], &[&str])] = &[
     ("preview", &["--scene=x"], &["engine", "furnace", "panel", "size", "out", "terminal", "json"]),
     ("fit", &["--recipe=x"], &["table", "form", "degree", "error", "lang"]),
     ("man", &["--out=x"], &[]),
+    (
+        "map",
+        &["--sbrdf=lafortune", "--brdf=x"],
+        &[
+            "lobes",
+            "residual",
+            "normalise",
+            "format",
+            "name",
+            "check",
+            "out",
+            "jobs",
+            "lock_timeout",
+            "memory",
+            "yes_large",
+            "quiet",
+            "json",
+        ],
+    ),
 ];
 
 #[test]
@@ -188,6 +207,7 @@ fn arguments_without_effect_are_refused_by_their_values() {
         (&["bake", text(&recipe), "--suggest", "1e-3"][..], "--suggest"),
         (&["bake", text(&recipe), "--margin", "0.1"], "--margin"),
         (&["bake", text(&recipe), "--texels", "referenced"], "--texels"),
+        (&["bake", text(&recipe), "-o", text(&to), "--check", "--jobs", "1"], "--jobs"),
         (&["plot", "ggx", "-p", "alpha=0.1", "-p", "alpha=0.2"], "alpha"),
         (&["albedo", "lambert", "--phi", "1"], "--phi"),
         (&["verify", text(&file), "--hashes"], "--hashes"),

@@ -7,12 +7,16 @@
 //! 0.09 and above ("practical") count four times. Errors are then measured in f32, operation by operation as the code computes,
 //! at the points of the fit, and between them along either variable and both, the borders of the domain among them. Results are clamped to
 //! the range of their channel, or of the values where these leave it: a model need not be passive.
+//!
+//! The numbers of a linearly transformed cosine are judged by its lobe (`lobes.rs`).
 
 mod formula;
+mod lobes;
 mod split;
 mod table;
 
 pub use formula::Lang;
+pub use lobes::{Error, Lobes};
 pub use split::{DEGREES, split_sum, split_sum_until, splits};
 pub use table::{Form, table, table_until};
 
@@ -60,6 +64,8 @@ pub struct Fit {
     pub whole: Off,
     /// Over mu >= 0.05, roughness >= 0.09, if there is an axis that this cuts.
     pub practical: Option<Off>,
+    /// Of parameters of a lobe: how far the lobes are from the model, over the whole and the practical domain.
+    pub lobes: Option<[Lobes; 2]>,
     /// Least denominator, as 1 + ..., over the points at which errors are measured; positive.
     pub least_denominator: f64,
     formula: Formula,
@@ -133,9 +139,13 @@ impl Fit {
         &self.formula.arguments
     }
 
-    /// Error that a bound is compared with: practical if that is asked for and there is one, else whole.
+    /// Error that a bound is compared with: practical if that is asked for and there is one, else whole; of parameters of a lobe what
+    /// they add to the L3 error of the nearest lobes.
     #[must_use]
     pub fn largest(&self, practical: bool) -> f64 {
+        if let Some([whole, inside]) = &self.lobes {
+            return if practical && self.practical.is_some() { inside.added() } else { whole.added() };
+        }
         self.practical.as_ref().filter(|_| practical).map_or(self.whole.largest, |p| p.largest)
     }
 
@@ -154,6 +164,7 @@ impl Fit {
             ranges,
             whole: Off::default(),
             practical: None,
+            lobes: None,
             least_denominator: 1.0,
             formula,
         };
@@ -190,10 +201,14 @@ impl Fit {
                 o.mean
             )
         };
-        let practical =
-            self.practical.as_ref().map_or_else(String::new, |o| line("mu >= 0.05, roughness >= 0.09", o));
+        let domain = "mu >= 0.05, roughness >= 0.09";
+        let practical = self.practical.as_ref().map_or_else(String::new, |o| line(domain, o));
+        let lobes = self.lobes.as_ref().map_or_else(String::new, |[whole, inside]| {
+            let inside = if practical.is_empty() { String::new() } else { inside.line(mark, domain) };
+            whole.line(mark, "whole domain") + &inside
+        });
         format!(
-            "{mark} {}: {}.\n{mark} {}; {} operations. Errors in f32, against integrals:\n{}{practical}",
+            "{mark} {}: {}.\n{mark} {}; {} operations. Errors in f32, against integrals:\n{lobes}{}{practical}",
             self.title,
             results.join(", "),
             self.form,

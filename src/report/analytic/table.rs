@@ -1,6 +1,7 @@
 //! Any table of one or two axes: each channel by itself, in the axis coordinates in [0, 1] (warped, as a reader computes them).
 
 use super::formula::{Formula, name, ratio};
+use super::lobes;
 use super::{BETWEEN, Fit, FitError, LINES, PRACTICAL_WEIGHT, STEPS, Sample, TOLERANCE, reached};
 use crate::cancel::Cancel;
 use crate::encode::code::coordinates;
@@ -94,13 +95,20 @@ pub fn table_until(cancel: &Cancel, bound: &Bound, form: Form, degree: usize) ->
     for offset in BETWEEN.into_iter().take(if axes.len() > 1 { 3 } else { 1 }) {
         all.extend(self::nodes(cancel, bound, offset)?);
     }
-    let sample = |n: Node| Sample {
-        arguments: axes.iter().zip(n.place.values()).map(|(a, v)| a.quantity.from_base(*v)).collect(),
+    let arguments =
+        |n: &Node| axes.iter().zip(n.place.values()).map(|(a, v)| a.quantity.from_base(*v)).collect();
+    let sample = |n: &Node| Sample { arguments: arguments(n), want: n.value.clone(), practical: n.practical };
+    let samples: Vec<Sample> = all.iter().map(sample).collect();
+    let mut fit = Fit::measured(formula, titles, (results, ranges), &samples).ok_or_else(pole)?;
+    let place = |n: Node| lobes::Place {
+        at: n.place.values().to_vec(),
+        arguments: arguments(&n),
         want: n.value,
         practical: n.practical,
     };
-    let samples: Vec<Sample> = all.into_iter().map(sample).collect();
-    Fit::measured(formula, titles, (results, ranges), &samples).ok_or_else(pole)
+    let places: Vec<lobes::Place> = all.into_iter().map(place).collect();
+    fit.lobes = lobes::measure(cancel, bound, &fit, &places)?;
+    Ok(fit)
 }
 
 /// Values on a grid of coordinates, shifted by a part of their distance.
