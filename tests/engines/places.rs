@@ -265,9 +265,13 @@ fn read(
         ("exr", _) => {
             // by name: the format sorts its channels
             let image = encode::read::read_file(&write("exr")).unwrap();
-            let ids: Vec<&str> = planned.bound.spec.layout.ids().collect();
-            let planes: Vec<Vec<f64>> =
-                ids.iter().map(|id| image.channel(id).unwrap().values.clone()).collect();
+            let positional = output.options.contains(&FileOption::Positional);
+            let plane = |(c, id): (usize, &str)| {
+                // without metadata nothing says what R and G are
+                let id = if positional { ["R", "G", "B", "A"][c] } else { id };
+                image.channel(id).unwrap().values.clone()
+            };
+            let planes: Vec<Vec<f64>> = planned.bound.spec.layout.ids().enumerate().map(plane).collect();
             Box::new(move |t, c| planes[c][t])
         }
         other => panic!("{other:?}: say where this format holds a texel"),
