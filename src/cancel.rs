@@ -56,7 +56,7 @@ impl<'a> Steps<'a> {
     }
 
     /// One more is done.
-    pub(crate) fn one(&self) {
+    pub(crate) fn step(&self) {
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
         if done == self.all || done.is_multiple_of(self.all.div_ceil(100).max(1)) {
             (self.tell)(done, self.all);

@@ -217,6 +217,6 @@ fn other_files_are_named_as_such() {
     let message = read_bytes(b"GIF89a..").unwrap_err().to_string();
     assert_eq!(
         message,
-        "not a file of exr, ktx2, dds, png, hdr, npy, merl (it begins with [47, 49, 46, 38, 39, 61, 2e, 2e])"
+        "not a file of exr, ktx2, dds, png, hdr, npy, pfm, merl (it begins with [47, 49, 46, 38, 39, 61, 2e, 2e])"
     );
 }

@@ -60,7 +60,7 @@ fn tolerance(row: &Row) -> tolerance::Tolerance {
         n if n.contains("smith") && narrow("alpha_x") => "near-mirror value",
         _ => "closed form value",
     };
-    tolerance::of(quantity)
+    tolerance::of_quantity(quantity)
 }
 
 #[test]

@@ -121,7 +121,7 @@ impl Args {
 pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     if let Some(option) = args.look.given().filter(|_| args.scene.is_empty()) {
         return Err(Failure::usage(format!(
-            "{option} says how scenes are read, and there is none; name one with --scene"
+            "{option} says how scenes are read, but no scene is given; name one with --scene"
         )));
     }
     let scenes = scene::files(&args.scene)?;

@@ -76,12 +76,12 @@ pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
         names.into_iter().map(|n| Ok((n, subject(n)?))).collect::<Result<_, Failure>>()?;
     let before = args.compare.as_ref().map(read).transpose()?;
     for (name, bound) in &bound {
-        one(name, bound, before.as_ref(), args, cancel)?;
+        converge_table(name, bound, before.as_ref(), args, cancel)?;
     }
     Ok(Exit::Done)
 }
 
-fn one(
+fn converge_table(
     name: &str,
     bound: &Bound,
     before: Option<&Chart>,

@@ -100,7 +100,7 @@ pub(super) fn layout<'a>(
     let Some(text) = text else { return Ok(None) };
     let is_bare = |p: &PathBuf| p.is_dir() || Layout::is_of(p);
     if !files.into_iter().any(is_bare) {
-        return Err(Failure::usage("--raw tells how .bin files lie, and there is none"));
+        return Err(Failure::usage("--raw tells how .bin files lie, but no .bin file is given"));
     }
     Layout::parse(text).map(Some).map_err(|e| Failure::usage(format!("--raw: {e}")))
 }

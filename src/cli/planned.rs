@@ -11,7 +11,7 @@ use serde_json::{Value as Json, json};
 
 /// One line a table and a map, the sum, and the page if there is to be one.
 pub(super) fn text(plan: &Plan, report: bool) -> String {
-    let costs: Vec<Cost> = plan.tables.iter().map(cost::of).collect();
+    let costs: Vec<Cost> = plan.tables.iter().map(cost::of_table).collect();
     let lines = plan.tables.iter().zip(&costs).map(|(t, c)| line(t, c));
     let mut text = lines.chain(plan.maps.iter().map(map_line)).collect::<Vec<_>>().join("\n");
     let (bytes, seconds) = costs.iter().fold((0, 0.0), |(b, s), c| (b + c.bytes, s + c.seconds));
@@ -32,7 +32,7 @@ pub(super) fn json(mut all: Json, plan: &Plan, report: bool) -> Json {
     if !plan.maps.is_empty() {
         all["planned_maps"] = plan.maps.iter().map(map).collect();
     }
-    all["planned"] = plan.tables.iter().map(|t| table(t, &cost::of(t))).collect();
+    all["planned"] = plan.tables.iter().map(|t| table(t, &cost::of_table(t))).collect();
     if report {
         all["report"] = page::NAME.into();
     }

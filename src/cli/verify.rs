@@ -65,7 +65,9 @@ pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
     }
     if (args.hashes || args.strict) && args.paths.iter().all(|p| p.is_file()) {
         let option = if args.hashes { "--hashes" } else { "--strict" };
-        return Err(Failure::usage(format!("{option} says how folders are checked, and there is none")));
+        return Err(Failure::usage(format!(
+            "{option} says how folders are checked, but only files are given; name a folder"
+        )));
     }
     let mut exit = Exit::Done;
     for path in &args.paths {

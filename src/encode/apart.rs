@@ -6,7 +6,7 @@ use crate::grid::Provenance;
 impl Image {
     /// The tables of the file, each as a picture of its own; the picture itself where it holds one, or does not say.
     #[must_use]
-    pub fn apart(self) -> Vec<Image> {
+    pub fn into_parts(self) -> Vec<Image> {
         let Some(Claim::Several(all)) = &self.provenance else { return vec![self] };
         let part = |p: &Provenance| {
             let own = |plane: &Plane| {

@@ -23,6 +23,14 @@ pub enum EncodeError {
         /// What it can store.
         allowed: String,
     },
+    /// What this build does not write.
+    #[error("{what} needs the feature `{feature}` of the crate, which this build does not have")]
+    Feature {
+        /// Storage or option id.
+        what: &'static str,
+        /// The feature of the crate.
+        feature: &'static str,
+    },
     /// The container does not take this option.
     #[error("{format} does not take option `{option}`; it takes {allowed}")]
     Option {

@@ -331,5 +331,5 @@ fn compress(bytes: &[u8], cancel: &Cancel) -> Result<Vec<u8>, EncodeError> {
 /// Not offered without the library: see [`Ktx2::options`].
 #[cfg(not(feature = "zstd"))]
 fn compress(_: &[u8], _: &Cancel) -> Result<Vec<u8>, EncodeError> {
-    Err(EncodeError::Option { format: "ktx2", option: "zstd", allowed: "none".to_owned() })
+    Err(EncodeError::Feature { what: "zstd", feature: "zstd" })
 }

@@ -129,6 +129,9 @@ impl Mips<'_> {
         if level.values.len() != expected * n {
             return Err(EncodeError::Count { got: level.values.len(), texels: expected, channels: n });
         }
+        if !self.storage.is_written() {
+            return Err(EncodeError::Feature { what: self.storage.id(), feature: "blocks" });
+        }
         let row = level.size[0] * n;
         let rows = level.values.par_chunks(row.max(1)).enumerate();
         if let Some(kind) = Kind::of(self.storage) {

@@ -73,6 +73,7 @@ pub mod mips;
 pub mod npy;
 mod open;
 pub mod option;
+pub mod pfm;
 pub mod png;
 mod png_read;
 mod quantise;
@@ -216,6 +217,7 @@ pub static ENCODERS: &[&dyn Encoder] = &[
     &png::Png,
     &hdr::Hdr,
     &npy::Npy,
+    &pfm::Pfm,
     &raw::Raw,
     &text::Text,
     &csv::Csv,

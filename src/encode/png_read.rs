@@ -5,15 +5,13 @@ use super::stoppable::Stoppable;
 use super::texels;
 use crate::cancel::Cancel;
 use crate::grid::provenance::ATTRIBUTE;
-use crate::picture::Samples;
-use image::codecs::png::PngDecoder;
-use image::{ImageDecoder, Limits};
+use crate::picture::Png;
 use std::io::Cursor;
 
 const FORMAT: &str = "png";
 
 /// Most bytes that the decoder may take for rows, text and profiles.
-const MAX_ALLOC: u64 = 1 << 30;
+const MAX_ALLOC: usize = 1 << 30;
 
 /// Longest provenance that is unpacked.
 const MAX_TEXT: usize = 1 << 24;
@@ -44,14 +42,11 @@ fn library(e: impl std::error::Error + Send + Sync + 'static) -> ReadError {
 
 /// Size and codes of each channel.
 fn pixels(bytes: &[u8], cancel: &Cancel) -> Result<(usize, usize, Vec<Plane>), ReadError> {
-    let mut limits = Limits::default();
-    limits.max_alloc = Some(MAX_ALLOC);
-    let decoder =
-        PngDecoder::with_limits(Stoppable::new(Cursor::new(bytes), cancel), limits).map_err(library)?;
-    let (w, h) = decoder.dimensions();
+    let file = Png::open(Stoppable::new(Cursor::new(bytes), cancel), MAX_ALLOC).map_err(library)?;
+    let (w, h) = file.size();
     let (width, height) = (w as usize, h as usize);
-    let n = usize::from(decoder.color_type().channel_count());
-    let samples = width.checked_mul(height).and_then(|a| a.checked_mul(n)).unwrap_or(usize::MAX);
+    let pixels = width.checked_mul(height);
+    let samples = pixels.and_then(|a| a.checked_mul(file.channels)).unwrap_or(usize::MAX);
     if samples > MAX_SAMPLES {
         return Err(ReadError::Samples { format: FORMAT, width, height });
     }
@@ -60,7 +55,7 @@ fn pixels(bytes: &[u8], cancel: &Cancel) -> Result<(usize, usize, Vec<Plane>), R
             format!("{} bytes cannot hold {width} x {height} pixels: the file is cut short", bytes.len());
         return Err(ReadError::Fault { format: FORMAT, fault });
     }
-    let samples = Samples::read(decoder, width * height).map_err(library)?;
+    let samples = file.read().map_err(library)?;
     let sample = if samples.are_wide() { Sample::Unorm16 } else { Sample::Unorm8 };
     let plane = |(c, name): (usize, &&str)| Plane {
         name: (*name).to_owned(),

@@ -121,11 +121,12 @@ impl Storage {
         range: impl Fn(usize) -> [f64; 2],
     ) -> Result<(), (usize, QuantiseError)> {
         let count = texel.len();
+        self.check_written().map_err(|e| (0, e))?;
         if let Some(limit) = self.most_channels().filter(|&limit| count > limit) {
             return Err((limit, QuantiseError::Channels { count, limit, storage: self.id() }));
         }
         for (c, v) in texel.iter_mut().enumerate() {
-            let rounded = self.alone(*v, c, range(c)).map_err(|e| (c, e))?;
+            let rounded = self.round(*v, c, range(c)).map_err(|e| (c, e))?;
             *v = if *v < 0.0 && rounded.abs() == 0.0 { 0.0 } else { *v };
         }
         Ok(())

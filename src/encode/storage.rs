@@ -119,6 +119,12 @@ pub enum QuantiseError {
         /// Storage id.
         storage: &'static str,
     },
+    /// A storage that this build does not write.
+    #[error("{storage} needs the feature `blocks` of the crate, which this build does not have")]
+    Feature {
+        /// Storage id.
+        storage: &'static str,
+    },
     /// More channels than a texel of this storage holds.
     #[error("{storage} holds at most {limit} channels, the table has {count}")]
     Channels {
@@ -298,16 +304,17 @@ impl Storage {
         range: impl Fn(usize) -> [f64; 2],
     ) -> Result<(), (usize, QuantiseError)> {
         let (count, storage) = (texel.len(), self.id());
+        self.check_written().map_err(|e| (0, e))?;
         if let Some(limit) = self.most_channels().filter(|&limit| count > limit) {
             return Err((limit, QuantiseError::Channels { count, limit, storage }));
         }
         for (c, v) in texel.iter_mut().enumerate() {
-            *v = self.alone(*v, c, range(c)).map_err(|e| (c, e))?;
+            *v = self.round(*v, c, range(c)).map_err(|e| (c, e))?;
         }
         if let (Some(kind), Coding::Unorm { .. }) = (Kind::of(self), self.coding(0)) {
             for (c, v) in texel.iter_mut().enumerate() {
                 let code = self.position(*v, range(c)).map_err(|e| (c, e))?;
-                *v = self.coding(c).decode(kind.alone(code), range(c));
+                *v = self.coding(c).decode(kind.uniform_block(code), range(c));
             }
         }
         match self.coding(0) {
@@ -329,7 +336,7 @@ impl Storage {
     }
 
     /// Rounds a value if its channel is coded by itself, and checks it in any case.
-    pub(super) fn alone(self, value: f64, channel: usize, range: [f64; 2]) -> Result<f64, QuantiseError> {
+    pub(super) fn round(self, value: f64, channel: usize, range: [f64; 2]) -> Result<f64, QuantiseError> {
         if !value.is_finite() {
             return Err(QuantiseError::NotFinite { value });
         }

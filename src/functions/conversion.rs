@@ -86,7 +86,7 @@ const TABLE: &[Conversion] = &[
         id: "ward",
         title: "Ward's widths alpha_x, alpha_y",
         numbers: &[("alpha_x", WIDTH), ("alpha_y", WIDTH)],
-        sources: &[(cite::WARD_1992, "Eq. 5 (number recalled)")],
+        sources: &[(cite::WARD_1992, "the elliptical Gaussian lobe")],
         lobe: Lobe::Beckmann,
         told: |w| w,
         model: Some(|[x, y]| ("ward", vec![("rho_d", 0.0), ("rho_s", 1.0), ("alpha_x", x), ("alpha_y", y)])),

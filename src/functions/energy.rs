@@ -75,7 +75,10 @@ pub static ALL: &[FunctionInfo] = &[
         id: "turquin-factor",
         title: "Turquin's factor of the single-scattering lobe",
         formula: "1 + F0 (1 - E) / E",
-        sources: &[(cite::TURQUIN_2019, "Eq. 16 (number recalled)")],
+        sources: &[
+            (cite::TURQUIN_2019, "Eq. 16, by MaterialX"),
+            (cite::MATERIALX, "`mx_ggx_energy_compensation`: the same factor"),
+        ],
         params: &[F0, E_MU],
         inputs: &[],
         unit: "1",
@@ -89,7 +92,7 @@ pub static ALL: &[FunctionInfo] = &[
         id: "fdez-aguera-weights",
         title: "Weights of the split sum with multiple scattering",
         formula: "single F0 A + B; multiple single F_avg E_ms / (1 - F_avg E_ms), E_ms = 1 - A - B; rest 1 - single - multiple",
-        sources: &[(cite::FDEZ_AGUERA_2019, "Eq. 8 to 12 (numbers recalled)")],
+        sources: &[(cite::FDEZ_AGUERA_2019, "the split sum with multiple scattering")],
         params: &[
             Param::choice(
                 "part",

@@ -10,7 +10,7 @@ pub static ALL: &[FunctionInfo] = &[
         id: "toksvig",
         title: "Toksvig's exponent of an averaged normal",
         formula: "s |N| / (|N| + s (1 - |N|))",
-        sources: &[(cite::TOKSVIG_2005, "Eq. 5 (number recalled)")],
+        sources: &[(cite::TOKSVIG_2005, "the shortened exponent")],
         params: &[
             number("length", "length of the mean normal", [0.0, 1.0], 0.9).also(&["Na"]),
             number("s", "Blinn-Phong exponent", [0.0, 1e9], 64.0),
@@ -27,7 +27,10 @@ pub static ALL: &[FunctionInfo] = &[
         id: "tokuyoshi-kaplanyan",
         title: "Width widened by the variance of normals in a pixel",
         formula: "sqrt(min(1, alpha^2 + min(2 sigma2 d2, kappa)))",
-        sources: &[(cite::TOKUYOSHI_KAPLANYAN_2019, "listing 1 (number recalled)")],
+        sources: &[
+            (cite::TOKUYOSHI_KAPLANYAN_2019, "the isotropic filter"),
+            (cite::FILAMENT_SHADERS, "`normalFiltering`: the same form"),
+        ],
         params: &[
             number("alpha", "width; alpha = roughness^2", [0.0, 1.0], 0.25),
             number("d2", "|dn/dx|^2 + |dn/dy|^2 in screen space", [0.0, 1e9], 0.0)
@@ -56,7 +59,7 @@ pub static ALL: &[FunctionInfo] = &[
         id: "lean-density",
         title: "Density of slopes of a LEAN map",
         formula: "exp(-(h - B)^T S^-1 (h - B) / 2) / (2 pi sqrt|S|), S = M - B B^T + 1 / s",
-        sources: &[(cite::OLANO_BAKER_2010, "Eq. 5 and 9 (numbers recalled)")],
+        sources: &[(cite::OLANO_BAKER_2010, "the Gaussian of slopes and its covariance")],
         params: &[
             number("bx", "mean slope along x", [-100.0, 100.0], 0.0).also(&["Bx"]),
             number("by", "mean slope along y", [-100.0, 100.0], 0.0).also(&["By"]),

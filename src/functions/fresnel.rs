@@ -266,7 +266,7 @@ pub static ALL: &[FunctionInfo] = &[
         id: "fresnel-lazanyi",
         title: "Schlick's factor corrected for metals",
         formula: "F0 + (1 - F0)(1 - c)^5 - a c (1 - c)^q, F0 = ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2)",
-        sources: &[(cite::LAZANYI_2005, "the compensated formula of section 4 (number recalled)")],
+        sources: &[(cite::LAZANYI_2005, "the formula with its compensating term")],
         params: &[N, K, DIP, DIP_EXPONENT],
         inputs: &[INCIDENCE],
         unit: "1",

@@ -51,7 +51,7 @@ pub static ALL: &[FunctionInfo] = &[
         id: "slab-emission",
         title: "Radiance of a glowing slab: fire, smoke",
         formula: "(j / sigma_t)(1 - exp(-sigma_t d))",
-        sources: &[(cite::CHANDRASEKHAR_1960, "section 7 (number of the equation not verified)")],
+        sources: &[(cite::CHANDRASEKHAR_1960, "section 7 (the formal solution)")],
         params: &[measured("j", "1/length", "emission per length", [0.0, 1e12], 1.0), SIGMA_T, PATH],
         inputs: &[],
         unit: "that of j times length",

@@ -12,7 +12,7 @@ const WAVELENGTH: Param = measured("lambda_nm", "nm", "wavelength in vacuum", [3
 const SOURCES: &[(cite::Cite, &str)] = &[
     (cite::JOHNSON_CHRISTY_1972, "Table I (Au, Ag, Cu)"),
     (cite::JOHNSON_CHRISTY_1974, "Table I (Fe, Ni, Ti)"),
-    (cite::RAKIC_1995, "Table 2 (Al, number recalled)"),
+    (cite::RAKIC_1995, "the table of n and k (Al)"),
     (cite::RAKIC_1998, "the Brendel-Bormann fit (W)"),
     (cite::POLYANSKIY_2024, "the transcription of all rows"),
 ];
@@ -93,7 +93,7 @@ pub static ALL: &[FunctionInfo] = &[
             (cite::KUTZ_2021, "section 2.3"),
             (cite::JOHNSON_CHRISTY_1972, "Table I (Au, Ag, Cu)"),
             (cite::JOHNSON_CHRISTY_1974, "Table I (Fe, Ni, Ti)"),
-            (cite::RAKIC_1995, "Table 2 (Al, number recalled)"),
+            (cite::RAKIC_1995, "the table of n and k (Al)"),
             (cite::RAKIC_1998, "the Brendel-Bormann fit (W)"),
             (cite::POLYANSKIY_2024, "the transcription of all rows"),
         ],

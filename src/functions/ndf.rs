@@ -100,7 +100,10 @@ pub static ALL: &[FunctionInfo] = &[
         id: "d-student-t",
         title: "Student's t distribution of slopes (STD)",
         formula: "(1 + X / (gamma - 1))^(-gamma) / (pi ax ay cos^4), X = ((x / ax)^2 + (y / ay)^2) / z^2",
-        sources: &[(cite::RIBARDIERE_2017, "Eq. 4 (number recalled)")],
+        sources: &[
+            (cite::RIBARDIERE_2017, "Eq. 18, by appleseed"),
+            (cite::APPLESEED, "`StdMDF::D`: the same form"),
+        ],
         params: &[ALPHA, ALPHA_X, ALPHA_Y, GAMMA],
         inputs: &[NORMAL],
         unit: "1/sr",

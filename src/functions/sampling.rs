@@ -210,7 +210,10 @@ pub static ALL: &[FunctionInfo] = &[
         id: "sample-ashikhmin-shirley-phi",
         title: "Azimuth of an Ashikhmin-Shirley half vector, first quadrant",
         formula: "atan(sqrt((nu + 1) / (nv + 1)) tan(pi u1 / 2))",
-        sources: &[(cite::ASHIKHMIN_SHIRLEY_2000, "Eq. 9 (number recalled)")],
+        sources: &[
+            (cite::ASHIKHMIN_SHIRLEY_2000, "the azimuth of the half vector"),
+            (cite::CYCLES, "`bsdf_ashikhmin_shirley.h`: the same"),
+        ],
         params: &[NU, NV, U1],
         inputs: &[],
         unit: "rad",
@@ -230,7 +233,10 @@ pub static ALL: &[FunctionInfo] = &[
         id: "sample-ashikhmin-shirley-cosine",
         title: "Cosine of an Ashikhmin-Shirley half vector",
         formula: "(1 - u2)^(1 / (e + 1)), e = nu cos^2 phi + nv sin^2 phi",
-        sources: &[(cite::ASHIKHMIN_SHIRLEY_2000, "Eq. 10 (number recalled)")],
+        sources: &[
+            (cite::ASHIKHMIN_SHIRLEY_2000, "the cosine of the half vector"),
+            (cite::CYCLES, "`bsdf_ashikhmin_shirley.h`: the same"),
+        ],
         params: &[NU, NV, U1, U2],
         inputs: &[],
         unit: "1",

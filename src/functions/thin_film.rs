@@ -84,7 +84,10 @@ pub static ALL: &[FunctionInfo] = &[
         id: "thin-film-rgb",
         title: "Colour of a thin film in white light (Belcour and Barla)",
         formula: "M (R12 + R* + 2 sum_m C_m S(m OPD, m phi)), R* = T^2 R23 / (1 - R12 R23), C_m = (R* - T)(R12 R23)^(m/2)",
-        sources: &[(cite::BELCOUR_BARLA_2017, "Eq. 6 to 10 (numbers recalled)")],
+        sources: &[
+            (cite::BELCOUR_BARLA_2017, "Eq. 10, by Cycles"),
+            (cite::CYCLES, "`iridescence_airy_summation_channel`: the same series"),
+        ],
         params: &[
             Param::choice("channel", "channel of linear RGB", &["R", "G", "B"]),
             number("n2", "index of the film", [1.0, 10.0], 1.33),

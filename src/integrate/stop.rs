@@ -148,7 +148,7 @@ impl Level {
     }
 
     /// Differences to another level, and magnitudes, of each channel.
-    fn apart(&self, other: &Level, channels: usize) -> (Sums, Sums) {
+    fn difference(&self, other: &Level, channels: usize) -> (Sums, Sums) {
         let (mut difference, mut magnitude) = ([0.0; MAX_CHANNELS], [0.0; MAX_CHANNELS]);
         let used = self.used.max(other.used);
         for (f, g) in self.panels[..used].iter().zip(&other.panels) {
@@ -190,7 +190,7 @@ pub fn climb<E>(
         fine.clear();
         at(j, &mut fine)?;
         if j > first {
-            let (difference, magnitude) = fine.apart(&coarse, channels);
+            let (difference, magnitude) = fine.difference(&coarse, channels);
             if let Some(before) = &before {
                 for c in 0..channels {
                     error[c] =

@@ -73,7 +73,7 @@ impl Footprint {
 
     /// Covariance of the slopes of the normals, in the frame of the mesh.
     ///
-    /// Source: [Olano and Baker 2010](crate::cite::OLANO_BAKER_2010) Eq. 9 (number recalled), by differences from the mean.
+    /// Source: [Olano and Baker 2010](crate::cite::OLANO_BAKER_2010) (the covariance of the filtered map), by differences from the mean.
     #[must_use]
     pub fn covariance(&self) -> DMat2 {
         let slopes = || self.facets.iter().map(|f| (Footprint::slope(DVec3::Z, f.normal), f.weight));

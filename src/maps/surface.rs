@@ -132,7 +132,7 @@ impl Convention {
 /// Checks a roughness.
 ///
 /// # Errors
-/// [`TexelFault`] if it is none.
+/// [`TexelFault`] if it is not in [0, 1].
 pub fn roughness(value: f32) -> Result<f32, TexelFault> {
     match value {
         v if !v.is_finite() => Err(TexelFault::NotFinite),

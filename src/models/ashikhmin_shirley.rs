@@ -18,10 +18,10 @@ pub static INFO: ModelInfo = ModelInfo {
     id: "ashikhmin-shirley",
     title: "Ashikhmin-Shirley",
     formula: "f = f_s + f_d, as in `ashikhmin-shirley-specular` and `ashikhmin-shirley-diffuse`",
-    sources: &[(
-        cite::ASHIKHMIN_SHIRLEY_2000,
-        "the specular and the diffuse term (equation numbers not verified)",
-    )],
+    sources: &[
+        (cite::ASHIKHMIN_SHIRLEY_2000, "the specular and the diffuse term"),
+        (cite::BBM, "`ashikhminshirleyfull.h`: the same form"),
+    ],
     params: &[RD, RS, NU, NV],
     laws: Laws { reciprocal: true, passive: true, isotropic: false },
     notes: "E <= 1 was found in every scan (0.982 at most with rd = 1), not proved; of the specular part it is proved. Kink at mu_i = mu_o.",

@@ -16,7 +16,10 @@ pub static INFO: ModelInfo = ModelInfo {
     id: "ashikhmin-shirley-diffuse",
     title: "Ashikhmin-Shirley, diffuse part",
     formula: "f = 28 Rd / (23 pi) (1 - Rs) (1 - (1 - mu_i/2)^5) (1 - (1 - mu_o/2)^5)",
-    sources: &[(cite::ASHIKHMIN_SHIRLEY_2000, "the diffuse term (equation number not verified)")],
+    sources: &[
+        (cite::ASHIKHMIN_SHIRLEY_2000, "the diffuse term"),
+        (cite::PBRT_2010, "`FresnelBlend::f`, its first term: the same form"),
+    ],
     params: &[RD, RS],
     laws: Laws { reciprocal: true, passive: true, isotropic: true },
     notes: "E = Rd (1 - Rs) (1 - (1 - mu/2)^5): 0 at grazing, at most 31/32; E_avg = 23/28 Rd (1 - Rs).",

@@ -21,7 +21,8 @@ pub static INFO: ModelInfo = ModelInfo {
     formula: "f = sqrt((nu + 1)(nv + 1)) / (8 pi) (n.wh)^e F(v) / (v max(mu_i, mu_o)), v = wi.wh, \
         e = (nu wh.x^2 + nv wh.y^2) / (wh.x^2 + wh.y^2), F = Rs + (1 - Rs)(1 - v)^5",
     sources: &[
-        (cite::ASHIKHMIN_SHIRLEY_2000, "the specular term (equation number not verified)"),
+        (cite::ASHIKHMIN_SHIRLEY_2000, "the specular term"),
+        (cite::CYCLES, "`bsdf_ashikhmin_shirley.h`, without F: the same form"),
         (cite::SCHLICK_1994, "Eq. 15 (F)"),
     ],
     params: &[RS, NU, NV],

@@ -24,7 +24,7 @@ pub static INFO: ModelInfo = ModelInfo {
     formula: "I = kd s_i^p + ks max(0, s_i s_o - x_i x_o)^q, s = sqrt(1 - x^2), x along the fibre",
     sources: &[(
         cite::BANKS_1994,
-        "illumination of one-dimensional manifolds (geometry derived again, equations not verified)",
+        "illumination of one-dimensional manifolds (the geometry is derived here)",
     )],
     params: &[
         KD,

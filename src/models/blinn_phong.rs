@@ -19,7 +19,7 @@ pub static INFO: ModelInfo = ModelInfo {
     formula: "f = kd / pi + ks C (n.wh)^n, C = (n + 2)(n + 4) / (8 pi (n + 2^(-n/2)))",
     sources: &[
         (cite::BLINN_1977, "the lobe"),
-        (cite::DUTRE_2006, "section 2.5, modified Blinn-Phong (form recalled)"),
+        (cite::BRDF_EXPLORER, "`blinnphong.brdf`, not divided by n.l (the lobe; its norm is derived here)"),
     ],
     params: &[KD, KS, N],
     laws: Laws { reciprocal: true, passive: true, isotropic: true },

@@ -18,7 +18,7 @@ pub static INFO: ModelInfo = ModelInfo {
     title: "Blinn-Phong, the textbook form over the cosine",
     formula: "f = kd + ks (n.wh)^n / mu_i",
     sources: &[
-        (cite::DUTRE_2006, "section 2.5, Blinn-Phong (form recalled)"),
+        (cite::BRDF_EXPLORER, "`blinnphong.brdf`, divided by n.l (the lobe)"),
         (cite::BLINN_1977, "the lobe"),
     ],
     params: &[KD, KS, N],

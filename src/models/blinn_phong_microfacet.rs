@@ -18,7 +18,8 @@ pub static INFO: ModelInfo = ModelInfo {
     title: "Torrance-Sparrow with Blinn-Phong facets",
     formula: "f = F(wo.wh) (n + 2) / (2 pi) cos^n G / (4 mu_o mu_i), G = min(1, 2 h.z mu_o / v, 2 h.z mu_i / v)",
     sources: &[
-        (cite::WALTER_2007, "Eq. 30 (D, number recalled), 20 (f)"),
+        (cite::WALTER_2007, "the Phong distribution (D), Eq. 20 (f)"),
+        (cite::BBM, "`ndf/phong.h`: the same D"),
         (cite::TORRANCE_SPARROW_1967, "Eq. 16 to 18 (G)"),
     ],
     params: &[

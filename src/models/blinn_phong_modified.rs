@@ -16,7 +16,7 @@ pub static INFO: ModelInfo = ModelInfo {
     title: "Blinn-Phong, modified, not normalised",
     formula: "f = kd + ks (n.wh)^n",
     sources: &[
-        (cite::DUTRE_2006, "section 2.5, modified Blinn-Phong (form recalled)"),
+        (cite::BRDF_EXPLORER, "`blinnphong.brdf`, not divided by n.l (the lobe)"),
         (cite::BLINN_1977, "the lobe"),
     ],
     params: &[KD, KS, N],

@@ -23,7 +23,7 @@ pub static INFO: ModelInfo = ModelInfo {
     title: "Energy-preserving Oren-Nayar (EON)",
     formula: "f = f_FON + rho_ms / pi (1 - E(mu_i)) (1 - E(mu_o)) / (1 - E_avg), rho_ms = rho^2 E_avg / (1 - rho (1 - E_avg)), E of FON at rho = 1",
     sources: &[
-        (cite::PORTSMOUTH_2025, "the compensation lobe, and the listing (numbers not verified)"),
+        (cite::PORTSMOUTH_2025, "the authors' listing, `f_EON` (both lobes) and `E_EON`"),
         (cite::FUJII_2012, "the 'tiny improvement' page, first form"),
     ],
     params: &[RHO, R],

@@ -35,6 +35,11 @@ pub trait Facets: Debug + Send + Sync {
     fn groove_reach(&self) -> Option<f64> {
         None
     }
+
+    /// Heights `wm.z` between which D is smooth on one scale, for grooves whose facets have a long tail.
+    fn groove_heights(&self) -> Vec<f64> {
+        Vec::new()
+    }
 }
 
 /// A half-vector lobe.
@@ -95,7 +100,8 @@ impl<L: Facets> Brdf for HalfVectorLobe<L> {
     fn reduced(&self, mu_o: f64, functionals: &[Functional], tolerance: f64) -> Option<Estimate> {
         let reach = self.facets.groove_reach()?;
         let d = |wm| self.facets.d(wm);
-        Some(Grooves { d: &d, heights: &[], reach, fresnel: self.fresnel }.integrate(
+        let heights = self.facets.groove_heights();
+        Some(Grooves { d: &d, heights: &heights, reach, fresnel: self.fresnel }.integrate(
             mu_o,
             functionals,
             tolerance,

@@ -12,7 +12,7 @@ pub static INFO: ModelInfo = ModelInfo {
     id: "fdez-aguera",
     title: "Microfacets with the compensation of Fdez-Aguera",
     formula: "f = f_s + F_ms E_ms / pi, F_ms = E_s F_avg / (1 - F_avg E_ms), E_ms = 1 - E(mu_o), E_s the albedo of f_s",
-    sources: &[(cite::FDEZ_AGUERA_2019, "Eq. 8 to 12 (numbers recalled)")],
+    sources: &[(cite::FDEZ_AGUERA_2019, "the split sum with multiple scattering")],
     params: compensated::PARAMS,
     laws: Laws { reciprocal: false, passive: true, isotropic: true },
     notes: "Not reciprocal: the added lobe depends on the view only. White (f0 = f90 = 1) reflects everything. alpha = 0 is the mirror.",

@@ -20,7 +20,10 @@ pub static INFO: ModelInfo = ModelInfo {
     title: "Frostbite's renormalised diffuse lobe, 2014",
     formula: "f = rho / pi (1 - r + r / 1.51) (1 + (F90 - 1)(1 - mu_i)^5) (1 + (F90 - 1)(1 - mu_o)^5), F90 = r / 2 + 2 r (wi.wh)^2",
     sources: &[
-        (cite::LAGARDE_2014, "section 3.1.2, listing 'Normalized Disney diffuse' (numbers recalled)"),
+        (
+            cite::LAGARDE_2014,
+            "the listing of Disney's diffuse lobe with its energy normalised (bias and factor)",
+        ),
         (cite::BURLEY_2012, "section 5.3 (the diffuse model)"),
     ],
     params: &[RHO, R],

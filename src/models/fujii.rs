@@ -21,7 +21,7 @@ pub static INFO: ModelInfo = ModelInfo {
         A_F = 1 / (1 + (1/2 - 2/(3 pi)) r)",
     sources: &[
         (cite::FUJII_2012, "the 'tiny improvement' page, first form"),
-        (cite::PORTSMOUTH_2025, "FON and its albedo (section number not verified)"),
+        (cite::PORTSMOUTH_2025, "the authors' listing, `f_EON` and `E_FON_exact` (FON and its albedo)"),
     ],
     params: &[RHO, R],
     laws: Laws { reciprocal: true, passive: true, isotropic: true },

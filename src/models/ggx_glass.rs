@@ -15,7 +15,7 @@ pub static INFO: ModelInfo = ModelInfo {
     formula: "f_r = F D G2 / (4 mu_o mu_i); f_t = |wi.h| |wo.h| n_o^2 (1 - F) D G2 / (|mu_o mu_i| (n_i wi.h + n_o wo.h)^2)",
     sources: &[
         (cite::WALTER_2007, "Eq. 16 and 17 (h), 20 (f_r), 21 (f_t), 22 (F), 33 and 34 (D, G1)"),
-        (cite::HEITZ_2016_MULTIPLE, "the beta form of G2 (equation not verified)"),
+        (cite::HEITZ_2016_MULTIPLE, "Appendix A, and the authors' code, `beta` (G2 across the surface)"),
     ],
     params: &[ALPHA, ALPHA_X, ALPHA_Y, ETA_DIELECTRIC, ACROSS],
     laws: Laws { reciprocal: true, passive: true, isotropic: false },

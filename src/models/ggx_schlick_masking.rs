@@ -19,7 +19,7 @@ pub static INFO: ModelInfo = ModelInfo {
     formula: "f = F(wo.wh) D(wh) G1(mu_o) G1(mu_i) / (4 mu_o mu_i), G1 = mu / (mu (1 - k) + k)",
     sources: &[
         (cite::KARIS_2013, "Eq. 3 (D), 4 (G)"),
-        (cite::SCHLICK_1994, "Eq. 19 (G1, number recalled), 15 (F)"),
+        (cite::SCHLICK_1994, "the rational forms of G1 and F"),
         (cite::WALTER_2007, "Eq. 33 (D), 20 (f)"),
     ],
     params: &[

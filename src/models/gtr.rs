@@ -20,7 +20,7 @@ pub static INFO: ModelInfo = ModelInfo {
     title: "GTR facets, Smith masking",
     formula: "f = F(wo.wh) D(wh) G2(wo, wi) / (4 mu_o mu_i), D = c / (1 + (alpha^2 - 1) cos^2)^gamma",
     sources: &[
-        (cite::BURLEY_2012, "App. B Eq. 1 to 3 (D, numbers recalled)"),
+        (cite::BURLEY_2012, "App. B.2 (D; Eq. 4 is its limit at gamma = 1)"),
         (cite::HEITZ_2014, "Eq. 14 and 41 (Lambda as an area), 99 (G2)"),
     ],
     params: &[

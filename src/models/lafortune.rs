@@ -22,7 +22,10 @@ pub static INFO: ModelInfo = ModelInfo {
     id: "lafortune",
     title: "Lafortune, sum of cosine lobes",
     formula: "f = rho_d / pi + sum_j rho_j max(0, cx_j x_i x_o + cy_j y_i y_o + cz_j mu_i mu_o)^n_j",
-    sources: &[(cite::LAFORTUNE_1997, "the generalised cosine lobe (equation number not verified)")],
+    sources: &[
+        (cite::LAFORTUNE_1997, "Eq. 4, by BBM (the generalised cosine lobe)"),
+        (cite::BBM, "`lafortune.h`: the same form"),
+    ],
     params: &[RHO_D, Param::rows("lobes", "the lobes", COLUMNS, &[&[-1.0, -1.0, 1.0, 20.0, 1.0]])],
     laws: Laws { reciprocal: true, passive: false, isotropic: false },
     notes: "Passive only if the parameters make it so: a lobe has E <= rho |C wo|^n 2 pi / (n + 2), with equality where C wo is along the normal. \

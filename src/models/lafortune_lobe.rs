@@ -17,7 +17,10 @@ pub static INFO: ModelInfo = ModelInfo {
     id: "lafortune-lobe",
     title: "Lafortune, one cosine lobe",
     formula: "f = rho_d / pi + rho_s max(0, cx x_i x_o + cy y_i y_o + cz mu_i mu_o)^n",
-    sources: &[(cite::LAFORTUNE_1997, "the generalised cosine lobe (equation number not verified)")],
+    sources: &[
+        (cite::LAFORTUNE_1997, "Eq. 4, by BBM (the generalised cosine lobe)"),
+        (cite::BBM, "`lafortune.h`: the same form"),
+    ],
     params: &[
         RHO_D,
         Param::number("rho_s", "rho_s", "factor of the lobe", [0.0, 1e7], Preset::Value(1.0)),

@@ -17,7 +17,10 @@ pub static INFO: ModelInfo = ModelInfo {
     id: "minnaert",
     title: "Minnaert",
     formula: "f = rho / pi (mu_i mu_o)^(k - 1)",
-    sources: &[(cite::MINNAERT_1941, "the reciprocal law of limb darkening (equation number not verified)")],
+    sources: &[
+        (cite::MINNAERT_1941, "the reciprocal law of limb darkening"),
+        (cite::BRDF_EXPLORER, "`minnaert.brdf`: the same power, with the factor (k + 1) / 2"),
+    ],
     params: &[
         Param::number("rho", "rho", "reflectance at k = 1", [0.0, 1.0], Preset::Value(1.0)),
         Param::number("k", "k", "limb darkening exponent", [0.0, 10.0], Preset::Value(1.5)).swept(

@@ -4,6 +4,7 @@
 //! [`microfacet`] and [`lobes`] hold what models are put together from.
 //! The command line, recipe checks, test grids, file metadata and the README table follow from the registry.
 
+pub mod abc;
 pub mod albedo_curve;
 pub mod ashikhmin_shirley;
 pub mod ashikhmin_shirley_diffuse;
@@ -122,6 +123,7 @@ pub static MODELS: &[&ModelInfo] = &[
     &torrance_sparrow::INFO,
     &cook_torrance_1982::INFO,
     &blinn_phong_microfacet::INFO,
+    &abc::INFO,
     &ggx_schlick_masking::INFO,
     &kulla_conty::INFO,
     &turquin::INFO,

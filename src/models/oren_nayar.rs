@@ -20,7 +20,10 @@ pub static INFO: ModelInfo = ModelInfo {
     title: "Oren-Nayar, qualitative",
     formula: "f = rho / pi (A + B max(0, cos(phi_i - phi_o)) sin(a) tan(b)), a = max(theta_i, theta_o), b = min(theta_i, theta_o), \
         A = 1 - sigma^2 / (2 (sigma^2 + 0.33)), B = 0.45 sigma^2 / (sigma^2 + 0.09)",
-    sources: &[(cite::OREN_NAYAR_1994, "section 4.4, the qualitative model (equation number not verified)")],
+    sources: &[
+        (cite::OREN_NAYAR_1994, "the qualitative model"),
+        (cite::PBRT_2010, "`OrenNayar::f`: the same form"),
+    ],
     params: &[RHO, SIGMA],
     laws: Laws { reciprocal: true, passive: false, isotropic: true },
     notes: "Not passive: with rho = 1, E at grazing is A + B/2, above 1 for 0 < sigma < 0.326, at most 1.0152 at sigma = 0.198. \

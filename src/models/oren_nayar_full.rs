@@ -22,10 +22,10 @@ pub static INFO: ModelInfo = ModelInfo {
         + 0.17 rho^2 / pi s2 / (s2 + 0.13) (1 - c (2 b / pi)^2)), c = cos(phi_i - phi_o), s2 = sigma^2, \
         a = max(theta_i, theta_o), b = min(theta_i, theta_o), C1 = 1 - 0.5 s2 / (s2 + 0.33), \
         C2 = 0.45 s2 / (s2 + 0.09) (sin(a) - (2 b / pi)^3 if c < 0), C3 = 0.125 s2 / (s2 + 0.09) (4 a b / pi^2)^2",
-    sources: &[(
-        cite::OREN_NAYAR_1994,
-        "section 4.3, the functional approximation (equation numbers not verified)",
-    )],
+    sources: &[
+        (cite::OREN_NAYAR_1994, "the functional approximation of the full model"),
+        (cite::MITSUBA, "`roughdiffuse.cpp`, without its fast form: the same form"),
+    ],
     params: &[RHO, SIGMA],
     laws: Laws { reciprocal: true, passive: false, isotropic: true },
     notes: "Not passive: E reaches 1.050 (rho = 1, sigma near 0.3, grazing). The formula is negative for sigma > 0.68 at low rho \

@@ -18,7 +18,8 @@ pub static INFO: ModelInfo = ModelInfo {
     title: "Phong, normalised (Lafortune and Willems 1994)",
     formula: "f = kd / pi + ks (n + 2) / (2 pi) max(0, R.wo)^n, R = 2 (n.wi) n - wi",
     sources: &[
-        (cite::LAFORTUNE_WILLEMS_1994, "section 2, the modified Phong model (equation number not verified)"),
+        (cite::LAFORTUNE_WILLEMS_1994, "the modified Phong model"),
+        (cite::MITSUBA, "`phong.cpp`: the same form"),
         (cite::PHONG_1975, "the lobe"),
     ],
     params: &[KD, KS, N],

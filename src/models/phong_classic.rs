@@ -17,7 +17,10 @@ pub static INFO: ModelInfo = ModelInfo {
     id: "phong-classic",
     title: "Phong, the textbook form over the cosine",
     formula: "f = kd + ks max(0, R.wo)^n / mu_i",
-    sources: &[(cite::DUTRE_2006, "section 2.5, Phong (form recalled)"), (cite::PHONG_1975, "the lobe")],
+    sources: &[
+        (cite::BRDF_EXPLORER, "`phong.brdf`, divided by n.l (the lobe)"),
+        (cite::PHONG_1975, "the lobe"),
+    ],
     params: &[KD, KS, N],
     laws: Laws { reciprocal: false, passive: false, isotropic: true },
     notes: "Not reciprocal, not passive: E(1) = pi kd + 2 pi ks / (n + 1), and the flux that a grazing beam loses grows as 1 / mu_i without bound \

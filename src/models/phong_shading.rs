@@ -19,7 +19,7 @@ pub static INFO: ModelInfo = ModelInfo {
     id: "phong-shading",
     title: "Phong's shading formula, 1975 (not a BRDF)",
     formula: "I = kd mu_i + ks max(0, R.wo)^n",
-    sources: &[(cite::PHONG_1975, "the shading formula (equation number not verified)")],
+    sources: &[(cite::PHONG_1975, "the shading formula")],
     params: &[KD, KS, N],
     laws: Laws { reciprocal: false, passive: false, isotropic: true },
     notes: "A shading value, not a BRDF: it includes its own falloff. Not reciprocal; energy is not defined for it.",

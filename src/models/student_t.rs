@@ -13,7 +13,9 @@ pub static INFO: ModelInfo = ModelInfo {
     title: "Student's t facets, Schlick Fresnel",
     formula: "f = F(wo.wh) D(wh) G2(wo, wi) / (4 mu_o mu_i), D = (1 + X / (gamma - 1))^(-gamma) / (pi ax ay cos^4), X = tan^2 / alpha^2",
     sources: &[
-        (cite::RIBARDIERE_2017, "Eq. 4 (D, number recalled), 13 to 15 (Lambda)"),
+        (cite::RIBARDIERE_2017, "Eq. 18, by appleseed (D), 13 to 15, by BBM (Lambda)"),
+        (cite::APPLESEED, "`StdMDF::D`: the same form"),
+        (cite::BBM, "`ndf/studentt.h`: the same Lambda, by a fit"),
         (cite::HEITZ_2014, "Eq. 99 (correlated G2)"),
         (cite::SCHLICK_1994, "Eq. 15 (F)"),
     ],

@@ -11,7 +11,10 @@ pub static INFO: ModelInfo = ModelInfo {
     id: "turquin",
     title: "Microfacets with the compensation of Turquin",
     formula: "f = f_s (1 + F0 (1 - E(mu_o)) / E(mu_o)), E the white albedo",
-    sources: &[(cite::TURQUIN_2019, "Eq. 16 (number recalled)")],
+    sources: &[
+        (cite::TURQUIN_2019, "Eq. 16, by MaterialX"),
+        (cite::MATERIALX, "`mx_ggx_energy_compensation`: the same factor"),
+    ],
     params: compensated::PARAMS,
     laws: Laws { reciprocal: false, passive: true, isotropic: true },
     notes: "Not reciprocal: the view side alone is compensated. White (f0 = f90 = 1) reflects everything. alpha = 0 is the mirror.",

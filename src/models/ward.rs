@@ -19,7 +19,8 @@ pub static INFO: ModelInfo = ModelInfo {
     formula: "f = rho_d / pi + rho_s exp(-X) / (4 pi alpha_x alpha_y sqrt(mu_i mu_o)), \
         X = tan^2(theta_h) (cos^2(phi_h) / alpha_x^2 + sin^2(phi_h) / alpha_y^2)",
     sources: &[
-        (cite::WARD_1992, "Eq. 5a (number recalled)"),
+        (cite::WARD_1992, "the elliptical Gaussian lobe"),
+        (cite::MITSUBA, "`ward.cpp`, variant ward: the same form"),
         (cite::WALTER_2005, "sampling and its weights"),
     ],
     params: &PARAMS,

@@ -17,7 +17,7 @@ pub static INFO: ModelInfo = ModelInfo {
     title: "Ward 1992, approximate exponent",
     formula: "f = rho_d / pi + rho_s exp(-Xs) / (4 pi alpha_x alpha_y sqrt(mu_i mu_o)), \
         Xs = 2 ((wh.x / alpha_x)^2 + (wh.y / alpha_y)^2) / (1 + wh.z)",
-    sources: &[(cite::WARD_1992, "Eq. 5b (number recalled)")],
+    sources: &[(cite::WARD_1992, "the elliptical Gaussian lobe, its approximation for speed")],
     params: &PARAMS,
     laws: Laws { reciprocal: true, passive: false, isotropic: false },
     notes: "Not passive: E grows as mu^(-1/2) at grazing (4.8 at theta = 1.57, alpha = 1), so start the mu axis above 0. \

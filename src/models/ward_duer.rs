@@ -14,7 +14,10 @@ pub static INFO: ModelInfo = ModelInfo {
     id: "ward-duer",
     title: "Ward, normalised by Duer 2006",
     formula: "f = rho_d / pi + rho_s exp(-X) / (4 pi alpha_x alpha_y mu_i mu_o), X as in `ward`",
-    sources: &[(cite::DUER_2006, "the improved normalisation (equation number not verified)")],
+    sources: &[
+        (cite::DUER_2006, "the improved normalisation"),
+        (cite::MITSUBA, "`ward.cpp`, variant ward-duer: the same form"),
+    ],
     params: &PARAMS,
     laws: Laws { reciprocal: true, passive: false, isotropic: false },
     notes: "Not passive: E grows as 1/mu at grazing (107 at theta = 1.57, alpha = 0.7), so start the mu axis above 0. \

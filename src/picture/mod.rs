@@ -5,8 +5,10 @@
 //! before memory is asked for ([`MAX_PIXELS`]), and what is damaged is an error.
 
 mod covered;
+#[cfg(feature = "pictures")]
 mod jpeg;
 mod levels;
+mod png;
 mod pyramid;
 mod read;
 mod resample;
@@ -14,8 +16,8 @@ mod write;
 
 pub use covered::{CoverError, Covered};
 pub use levels::{Codes, Levels, codes, levels};
+pub(crate) use png::Png;
 pub use pyramid::{Coverage, count_levels, halved, shrink};
-pub(crate) use read::Samples;
 pub use read::{MAGIC, facts, read_bytes, read_within};
 pub use resample::Wrap;
 pub use write::write_png;
@@ -89,6 +91,12 @@ pub enum PictureError {
         format: &'static str,
         /// The decoder's message.
         fault: String,
+    },
+    /// A format that this build does not read.
+    #[error("{format} needs the feature `pictures` of the crate, which this build does not have")]
+    Feature {
+        /// `jpeg` or `webp`.
+        format: &'static str,
     },
     /// A channel that is not there.
     #[error("no channel `{wanted}`; there is {got}")]

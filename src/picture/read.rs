@@ -1,11 +1,7 @@
 //! PNG and JPEG, and WebP for its levels. The other containers are read by `encode`.
 
-use super::jpeg;
+use super::png::Png;
 use super::{MAX_PIXELS, Picture, PictureError, Plane};
-use image::codecs::jpeg::JpegDecoder;
-use image::codecs::png::PngDecoder;
-use image::codecs::webp::WebPDecoder;
-use image::{ImageDecoder, Limits};
 use std::io::Cursor;
 
 /// How these files begin.
@@ -16,16 +12,6 @@ const MAX_ALLOC: u64 = 1 << 31;
 
 /// Bytes beside the picture: rows, tables, text, profiles.
 pub(super) const SLACK: u64 = 32 << 20;
-
-/// A decoder whose rows, text and profiles take no more than [`SLACK`], from its first chunk on.
-fn png(file: Cursor<&[u8]>) -> image::ImageResult<PngDecoder<Cursor<&[u8]>>> {
-    let mut limits = Limits::no_limits();
-    limits.max_alloc = Some(SLACK);
-    PngDecoder::with_limits(file, limits)
-}
-
-/// Bytes of memory for each pixel that WebP takes at most.
-const WEBP: f64 = 9.0;
 
 /// Reads a PNG or JPEG image from memory. Profiles and gamma are left alone: samples are codes as they stand.
 ///
@@ -59,25 +45,36 @@ pub fn facts(bytes: &[u8]) -> Result<([usize; 2], Vec<String>), PictureError> {
     let Some(format) = named(bytes) else {
         return Err(PictureError::Unknown(bytes.iter().copied().take(8).collect()));
     };
-    let of = |decoder: &dyn ImageDecoder| {
-        let (width, height) = decoder.dimensions();
-        let names = names(usize::from(decoder.color_type().channel_count()));
-        ([width as usize, height as usize], names.iter().map(|n| (*n).to_owned()).collect())
-    };
-    let damaged = |fault: String| PictureError::Damaged { format, fault };
-    // as in `decode`
-    let all = std::panic::AssertUnwindSafe(|| {
-        let file = Cursor::new(bytes);
-        match format {
-            "png" => png(file).map(|d| of(&d)),
-            _ => JpegDecoder::new(file).map(|d| of(&d)),
-        }
-    });
-    let found = std::panic::catch_unwind(all);
-    found.map_or_else(
-        |_| Err(damaged("the decoder gave up".to_owned())),
-        |r| r.map_err(|e| damaged(e.to_string())),
-    )
+    guarded(format, || {
+        let ((width, height), channels) = match format {
+            "png" => {
+                let png = open(bytes)?;
+                (png.size(), png.channels)
+            }
+            _ => library::facts(bytes, format)?,
+        };
+        let names = names(channels).iter().map(|n| (*n).to_owned()).collect();
+        Ok(([width as usize, height as usize], names))
+    })
+}
+
+/// What a decoder makes of a file: decoders can panic on damaged ones, and that is told as an error.
+fn guarded<T>(
+    format: &'static str,
+    read: impl FnOnce() -> Result<T, PictureError>,
+) -> Result<T, PictureError> {
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(read))
+        .unwrap_or_else(|_| Err(PictureError::Damaged { format, fault: "the decoder gave up".to_owned() }))
+}
+
+fn open(bytes: &[u8]) -> Result<Png<Cursor<&[u8]>>, PictureError> {
+    // its rows, text and profiles, from the first chunk on
+    let limit = usize::try_from(SLACK).unwrap_or(usize::MAX);
+    Png::open(Cursor::new(bytes), limit).map_err(damaged_png)
+}
+
+fn damaged_png(e: png::DecodingError) -> PictureError {
+    PictureError::Damaged { format: "png", fault: e.to_string() }
 }
 
 /// Names of so many channels.
@@ -133,47 +130,120 @@ pub(super) fn decode<T>(
     let Some(format) = format else {
         return Err(PictureError::Unknown(bytes.iter().copied().take(8).collect()));
     };
-    let damaged = |fault: String| PictureError::Damaged { format, fault };
-    let library = |e: image::ImageError| damaged(e.to_string());
-    // decoders can panic on damaged files; that is told as an error
-    let all = std::panic::AssertUnwindSafe(|| {
-        let file = Cursor::new(bytes);
+    guarded(format, || {
         let (header, samples) = match format {
-            "png" => unpack(png(file).map_err(library)?, format, 0.0, allow)?,
-            "webp" => unpack(WebPDecoder::new(file).map_err(library)?, format, WEBP, allow)?,
-            _ => {
-                let frame = jpeg::frame(bytes).map_err(|fault| damaged(fault.to_owned()))?;
-                // the picture, and coefficients of 16 bits
-                let a_pixel = f64::from(frame.components) + 2.0 * frame.kept;
-                unpack(JpegDecoder::new(file).map_err(library)?, format, a_pixel, allow)?
+            "png" => {
+                let png = open(bytes)?;
+                let (header, _) = header(png.size(), png.bytes(), allow)?;
+                (header, png.read().map_err(damaged_png)?)
             }
+            _ => library::read(bytes, format, allow)?,
         };
         Ok(make(&header, &samples))
-    });
-    std::panic::catch_unwind(all).unwrap_or_else(|_| Err(damaged("the decoder gave up".to_owned())))
+    })
 }
 
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative, and below 2^36")]
-fn unpack(
-    mut decoder: impl ImageDecoder,
-    format: &'static str,
-    bytes_a_pixel: f64,
+/// The header of an image of a size, and what `allow` says to it. `decoded`: bytes of what is decoded.
+fn header(
+    (width, height): (u32, u32),
+    decoded: u64,
     allow: impl FnOnce(&Header) -> Result<u64, PictureError>,
-) -> Result<(Header, Samples), PictureError> {
-    let (width, height) = decoder.dimensions();
+) -> Result<(Header, u64), PictureError> {
     let pixels = u64::from(width).saturating_mul(u64::from(height));
-    let needed = decoder.total_bytes().max((pixels as f64 * bytes_a_pixel) as u64);
-    let size = usize::try_from(pixels).ok().filter(|n| *n > 0 && usize::try_from(needed).is_ok());
-    let Some(size) = size else {
+    if pixels == 0 || usize::try_from(decoded).is_err() {
         return Err(PictureError::Pixels { width: width as usize, height: height as usize });
-    };
-    let header = Header { width, height, needed };
-    let library = |e: image::ImageError| PictureError::Damaged { format, fault: e.to_string() };
-    let mut limits = Limits::default();
-    limits.max_alloc = Some(allow(&header)?);
-    decoder.set_limits(limits).map_err(library)?;
-    let samples = Samples::read(decoder, size).map_err(library)?;
-    Ok((header, samples))
+    }
+    let header = Header { width, height, needed: decoded };
+    let allowed = allow(&header)?;
+    Ok((header, allowed))
+}
+
+/// Formats that a decoder of the crate `image` reads.
+#[cfg(feature = "pictures")]
+mod library {
+    use super::super::{PictureError, jpeg};
+    use super::{Header, Samples, header};
+    use image::codecs::jpeg::JpegDecoder;
+    use image::codecs::webp::WebPDecoder;
+    use image::{ImageDecoder, ImageError, Limits};
+    use std::io::Cursor;
+
+    /// Bytes of memory for each pixel that WebP takes at most.
+    const WEBP: f64 = 9.0;
+
+    /// Width and height, and the number of channels.
+    pub(super) fn facts(bytes: &[u8], format: &'static str) -> Result<((u32, u32), usize), PictureError> {
+        let decoder = JpegDecoder::new(Cursor::new(bytes)).map_err(|e| damaged(format, &e))?;
+        Ok((decoder.dimensions(), usize::from(decoder.color_type().channel_count())))
+    }
+
+    pub(super) fn read(
+        bytes: &[u8],
+        format: &'static str,
+        allow: impl FnOnce(&Header) -> Result<u64, PictureError>,
+    ) -> Result<(Header, Samples), PictureError> {
+        let (file, damaged) = (Cursor::new(bytes), |e: ImageError| damaged(format, &e));
+        match format {
+            "webp" => unpack(WebPDecoder::new(file).map_err(damaged)?, format, WEBP, allow),
+            _ => {
+                let frame = jpeg::frame(bytes)
+                    .map_err(|fault| PictureError::Damaged { format, fault: fault.to_owned() })?;
+                // the picture, and coefficients of 16 bits
+                let a_pixel = f64::from(frame.components) + 2.0 * frame.kept;
+                unpack(JpegDecoder::new(file).map_err(damaged)?, format, a_pixel, allow)
+            }
+        }
+    }
+
+    fn damaged(format: &'static str, e: &ImageError) -> PictureError {
+        PictureError::Damaged { format, fault: e.to_string() }
+    }
+
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "not negative, and below 2^36"
+    )]
+    fn unpack(
+        mut decoder: impl ImageDecoder,
+        format: &'static str,
+        bytes_a_pixel: f64,
+        allow: impl FnOnce(&Header) -> Result<u64, PictureError>,
+    ) -> Result<(Header, Samples), PictureError> {
+        let (width, height) = decoder.dimensions();
+        let pixels = u64::from(width).saturating_mul(u64::from(height));
+        let needed = decoder.total_bytes().max((pixels as f64 * bytes_a_pixel) as u64);
+        let (header, allowed) = header((width, height), needed, allow)?;
+        let library = |e: ImageError| damaged(format, &e);
+        let mut limits = Limits::default();
+        limits.max_alloc = Some(allowed);
+        decoder.set_limits(limits).map_err(library)?;
+        let colour = decoder.color_type();
+        let channels = usize::from(colour.channel_count());
+        let size = usize::from(colour.bytes_per_pixel()) / channels;
+        let bytes = usize::try_from(decoder.total_bytes()).unwrap_or(usize::MAX);
+        let mut data = vec![0; bytes];
+        decoder.read_image(&mut data).map_err(library)?;
+        Ok((header, Samples::new(channels, size, data)))
+    }
+}
+
+#[cfg(not(feature = "pictures"))]
+mod library {
+    use super::super::PictureError;
+    use super::{Header, Samples};
+
+    pub(super) fn facts(_: &[u8], format: &'static str) -> Result<((u32, u32), usize), PictureError> {
+        Err(PictureError::Feature { format })
+    }
+
+    pub(super) fn read(
+        _: &[u8],
+        format: &'static str,
+        _: impl FnOnce(&Header) -> Result<u64, PictureError>,
+    ) -> Result<(Header, Samples), PictureError> {
+        Err(PictureError::Feature { format })
+    }
 }
 
 /// A decoded image: codes of 8 or 16 bits, all channels of a pixel together. Greys of fewer bits and palettes are unfolded to 8.
@@ -186,14 +256,8 @@ pub(crate) struct Samples {
 }
 
 impl Samples {
-    /// All of an image of so many pixels.
-    pub(crate) fn read(decoder: impl ImageDecoder, pixels: usize) -> image::ImageResult<Samples> {
-        let colour = decoder.color_type();
-        let channels = usize::from(colour.channel_count());
-        let size = usize::from(colour.bytes_per_pixel()) / channels;
-        let mut data = vec![0; pixels * channels * size];
-        decoder.read_image(&mut data)?;
-        Ok(Samples { channels, size, data })
+    pub(super) const fn new(channels: usize, size: usize, data: Vec<u8>) -> Samples {
+        Samples { channels, size, data }
     }
 
     /// Names of the channels.

@@ -2,7 +2,7 @@
 
 use super::PictureError;
 
-/// Writes codes of 8 bits, all channels of a pixel together, as PNG: 3 channels as RGB, 4 as RGBA. One version of this program always
+/// Writes codes of 8 bits, all channels of a pixel together, as PNG: 1 channel as grey, 3 as RGB, 4 as RGBA. One version of this program always
 /// makes the same bytes.
 ///
 /// # Errors
@@ -17,7 +17,11 @@ pub fn write_png(size: [usize; 2], channels: usize, codes: &[u8]) -> Result<Vec<
     let library = |e: png::EncodingError| PictureError::Damaged { format: "png", fault: e.to_string() };
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, w, h);
-    encoder.set_color(if channels == 4 { png::ColorType::Rgba } else { png::ColorType::Rgb });
+    encoder.set_color(match channels {
+        1 => png::ColorType::Grayscale,
+        4 => png::ColorType::Rgba,
+        _ => png::ColorType::Rgb,
+    });
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_filter(png::Filter::Paeth);
     encoder.set_deflate_compression(png::DeflateCompression::Level(6));

@@ -53,7 +53,7 @@ pub fn large(plan: &Plan) -> Option<Large> {
     if texels < TEXELS && bytes < BYTES {
         return None;
     }
-    Some(Large { texels, bytes, seconds: plan.tables.iter().map(|t| of(t).seconds).sum() })
+    Some(Large { texels, bytes, seconds: plan.tables.iter().map(|t| of_table(t).seconds).sum() })
 }
 
 /// Most bytes of the files of a table.
@@ -70,7 +70,7 @@ const TRIED: usize = 16;
 /// Tries a few texels of a table. Texels that have no value cost nothing here; the bake names them.
 #[must_use]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below the number of texels")]
-pub fn of(table: &PlannedTable) -> Cost {
+pub fn of_table(table: &PlannedTable) -> Cost {
     let grid = &table.bound.spec.grid;
     let bytes = bytes(table);
     let count = grid.len().min(TRIED);

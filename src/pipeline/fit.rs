@@ -178,7 +178,7 @@ pub(super) fn fit(
     let places = places(grid, per_cell);
     let steps = Steps::new(places.len(), tell);
     let points: Vec<Point> = places.iter().map(|(x, _)| grid.at_coordinates(x)).collect();
-    let done = |count: usize| (0..count).for_each(|_| steps.one());
+    let done = |count: usize| (0..count).for_each(|_| steps.step());
     let values = at_points(bound, &points, tolerance, cancel, &done);
     let truth: Vec<(Point, f64, Sums)> = points
         .into_iter()

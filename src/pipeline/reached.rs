@@ -34,7 +34,7 @@ impl Reached {
         *self = self.nearer(Reached::Trial(error));
     }
 
-    pub(super) fn alone(&mut self, axis: &'static str, len: usize, error: f64) {
+    pub(super) fn only(&mut self, axis: &'static str, len: usize, error: f64) {
         *self = self.nearer(Reached::Alone { axis, len, error });
     }
 }
@@ -73,11 +73,11 @@ mod tests {
     fn what_came_nearest_is_told_and_no_advice_is_what_is_set_already() {
         let mut reached = Reached::default();
         assert_eq!(reached.to_string(), "no length was tried");
-        reached.alone("mu", 8, 0.25);
-        reached.alone("mu", 8, 0.5);
+        reached.only("mu", 8, 0.25);
+        reached.only("mu", 8, 0.5);
         assert_eq!(reached.to_string(), "axis mu alone leaves 2.5e-1 at 8 texels");
         reached.trial(0.75);
-        reached.alone("mu", 8, 0.125);
+        reached.only("mu", 8, 0.125);
         reached.trial(0.5);
         assert_eq!(reached.to_string(), "the best reached 5.0e-1");
         assert!(remedy(false, true).contains("search") && remedy(false, true).contains("`longest`"));

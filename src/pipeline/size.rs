@@ -291,7 +291,7 @@ impl<'a> Search<'a> {
                 }
             }
             if let Some((error, len)) = best.filter(|_| list.is_empty()) {
-                self.least().alone(axis.quantity.id, len, error);
+                self.least().only(axis.quantity.id, len, error);
                 return Ok(None);
             }
             choices.push(list);

@@ -113,7 +113,8 @@ pub fn suggest_within(
 ) -> Result<Vec<Suggestion>, PipelineError> {
     let one = |(i, planned): (usize, &PlannedTable)| {
         let range = ranges.get(planned.name()).copied();
-        let mut found = one(engine, plan, planned, i, Search { planned, want, range, language: "", cancel })?;
+        let mut found =
+            suggested(engine, plan, planned, i, Search { planned, want, range, language: "", cancel })?;
         if let (Some([lo, hi]), Some(_)) = (range, &found.found) {
             found.notes.push(format!("it covers what is read at roughness [{lo}, {hi}], and clamps beyond"));
         }
@@ -122,7 +123,7 @@ pub fn suggest_within(
     plan.tables.iter().enumerate().map(one).collect()
 }
 
-fn one(
+fn suggested(
     engine: &Engine,
     plan: &Plan,
     planned: &PlannedTable,

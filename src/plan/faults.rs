@@ -14,6 +14,15 @@ pub(crate) struct Faults {
 /// Faults that are kept; a file of a million unknown keys needs no more.
 const KEPT: usize = 10_000;
 
+impl Fault {
+    /// What this build leaves out.
+    pub(crate) fn without(what: &str, feature: &str) -> Fault {
+        let why =
+            format!("{what} needs the feature `{feature}` of the crate, which this build does not have");
+        Fault::Container { why, remedy: "build the crate with that feature" }
+    }
+}
+
 impl Faults {
     /// A fault of the value at `path`; of what it is missing in, if there is no such value.
     pub(crate) fn value(&mut self, path: Path, fault: Fault) {

@@ -51,9 +51,15 @@ impl Output {
         let storage = encoder.storages().iter().find(|s| s.id() == id).ok_or_else(|| {
             unknown_word(&format!("{container} storage"), id, encoder.storages().iter().map(|s| s.id()))
         })?;
+        if !storage.is_written() {
+            return Err(Fault::without(&format!("storage `{id}`"), "blocks"));
+        }
         let mut output = Output::new(encoder, *storage);
         let offered = encoder.options();
         for word in words {
+            if word == FileOption::Zstd.id() && container == "ktx2" && !cfg!(feature = "zstd") {
+                return Err(Fault::without("option `zstd`", "zstd"));
+            }
             if offered.is_empty() {
                 let why = format!("{container} takes no options");
                 return Err(Fault::Container { why, remedy: "leave them out" });
@@ -185,4 +191,24 @@ pub(super) fn check(request: &TableRequest, bound: &Bound, path: &Path, faults: 
 fn is_wide(storage: Storage, channel: &ChannelInfo) -> bool {
     let half_step = storage.default_tolerance() * (channel.range[1] - channel.range[0]);
     half_step.is_nan() || half_step > TOLERANCE[1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Output;
+
+    /// What `parse` says, by whether the feature is there.
+    fn is_told(output: &str, feature: &str, is_there: bool) {
+        let parsed = Output::parse(output).map_err(|fault| fault.to_string());
+        let names = format!("needs the feature `{feature}` of the crate");
+        let told = parsed.as_ref().err().is_some_and(|e| e.contains(&names));
+        assert!(if is_there { parsed.is_ok() } else { told }, "{output}, {feature} {is_there}: {parsed:?}");
+    }
+
+    #[test]
+    fn what_a_build_leaves_out_is_refused_with_its_feature() {
+        is_told("dds:bc6h", "blocks", cfg!(feature = "blocks"));
+        is_told("ktx2:bc4", "blocks", cfg!(feature = "blocks"));
+        is_told("ktx2:half+zstd", "zstd", cfg!(feature = "zstd"));
+    }
 }

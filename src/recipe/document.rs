@@ -24,7 +24,7 @@ use serde_json::{Map, Value as Json};
 use std::path::Path as File;
 use toml::de::DeTable;
 
-/// A recipe before it is resolved. What could not be read is none, or a hole, and a fault has been reported for it.
+/// A recipe before it is resolved. A value that could not be read is missing here, or a hole in its request, and its fault is in the list.
 #[derive(Debug, Default)]
 pub(super) struct Document {
     pub(super) name: Option<String>,
@@ -114,6 +114,10 @@ pub(super) fn read(root: &DeTable<'_>, folder: &File, faults: &mut Faults) -> Do
 /// The tables of an engine; what is wrong with them is wrong with the key `engine`.
 fn engine(id: &str, faults: &mut Faults) -> Vec<Draft> {
     let path = Path::root().key("engine");
+    if super::ENGINES.is_empty() {
+        faults.value(path, Fault::without(&format!("engine {}", show(id)), "engines"));
+        return Vec::new();
+    }
     let Some(found) = super::engine(id) else {
         faults.value(path, unknown_word("engine", id, super::ENGINES.iter().map(|e| e.id)));
         return Vec::new();

@@ -91,9 +91,31 @@ impl Engine {
     /// Resolves its recipe.
     ///
     /// # Errors
-    /// None for the engines in [`ENGINES`] (a test resolves them all), but where a container is left out of the build: the
+    /// None for the engines in [`ENGINES`] (a test resolves them all), but where a feature is left out of the build: the
     /// recipe of Bevy wants feature `zstd`.
     pub fn plan(&self) -> Result<Plan, RecipeError> {
         parse(self.recipe, &format!("presets/engines/{}.toml", self.id))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::parse;
+
+    #[test]
+    fn an_engine_that_a_build_leaves_out_is_refused_with_its_feature() {
+        let engine = parse("name = 'a'\nengine = 'bevy'", "a.toml").map_err(|e| e.to_string());
+        let lacks = match (cfg!(feature = "engines"), cfg!(feature = "zstd")) {
+            (false, _) => Some("engines"),
+            (true, false) => Some("zstd"),
+            (true, true) => None,
+        };
+        match (lacks, engine) {
+            (None, engine) => assert!(engine.is_ok(), "{:?}", engine.err()),
+            (Some(feature), engine) => {
+                let told = engine.err().unwrap_or_default();
+                assert!(told.contains(&format!("needs the feature `{feature}` of the crate")), "{told}");
+            }
+        }
     }
 }

@@ -51,7 +51,7 @@ pub(super) fn parse(text: &str) -> Result<Rows, String> {
     if n.len() < 2 {
         return Err("it has no two rows of wavelength and n".to_owned());
     }
-    let rows = if k.is_empty() { n.into_iter().map(|[l, n]| [l, n, 0.0]).collect() } else { both(&n, &k)? };
+    let rows = if k.is_empty() { n.into_iter().map(|[l, n]| [l, n, 0.0]).collect() } else { joined(&n, &k)? };
     Ok(visible(rows))
 }
 
@@ -175,7 +175,7 @@ fn ordered(mut curve: Curve, what: &str) -> Result<Vec<[f64; 2]>, String> {
 }
 
 /// Both at all wavelengths that lie within both.
-fn both(n: &[[f64; 2]], k: &[[f64; 2]]) -> Result<Rows, String> {
+fn joined(n: &[[f64; 2]], k: &[[f64; 2]]) -> Result<Rows, String> {
     let ends = |c: &[[f64; 2]]| c.first().zip(c.last()).map_or([0.0, 0.0], |(a, b)| [a[0], b[0]]);
     let ([a, b], [c, d]) = (ends(n), ends(k));
     let (low, high) = (a.max(c), b.min(d));

@@ -262,13 +262,13 @@ pub(super) static MAP: Keys = Keys::new(
             "A number, an image, or an image and how it is read.",
         ),
         key("sbrdf", Is::Section(&SBRDF), "Lobes at each texel, in place of the roughness."),
-        key("packing", Is::Word(|| of(&Packing::ALL)), "Channels that are written with the roughness."),
+        key("packing", Is::Word(|| ids(&Packing::ALL)), "Channels that are written with the roughness."),
         key("factor", Is::Number, "Factor of the roughness."),
         key("rule", Is::Word(|| RULES.iter().map(|r| r.id).collect()), "Filter rule."),
-        key("normals", Is::Word(|| of(&words::CENTRES)), "What the lobes stand about."),
-        key("shape", Is::Word(|| of(&words::SHAPES)), "One width, or two and a direction."),
-        key("effort", Is::Word(|| of(&words::EFFORTS)), "Fast, or every facet."),
-        key("objective", Is::Word(|| of(&words::OBJECTIVES)), "What the fit makes small."),
+        key("normals", Is::Word(|| ids(&words::CENTRES)), "What the lobes stand about."),
+        key("shape", Is::Word(|| ids(&words::SHAPES)), "One width, or two and a direction."),
+        key("effort", Is::Word(|| ids(&words::EFFORTS)), "Fast, or every facet."),
+        key("objective", Is::Word(|| ids(&words::OBJECTIVES)), "What the fit makes small."),
         key("outputs", Is::List(&Is::Form(map_outputs), [0, 64]), "Containers, with storages or not."),
         key("check", Is::Count, "Texels of a level that are measured, beside the worst."),
         key("compare", SWITCH, "Measure every published rule at the same texels."),
@@ -290,7 +290,7 @@ pub(super) static NORMAL: Keys = Keys::new(
         key("signed", SWITCH, "Numbers from -1 to 1, not codes."),
         key(
             "wrap",
-            Is::Any(&[Is::Word(|| of(&words::WRAPS)), Is::List(&Is::Word(|| of(&words::WRAPS)), [2, 2])]),
+            Is::Any(&[Is::Word(|| ids(&words::WRAPS)), Is::List(&Is::Word(|| ids(&words::WRAPS)), [2, 2])]),
             "What lies beyond the borders.",
         ),
         key("mend", SWITCH, "Take texels without a direction as flat."),
@@ -304,7 +304,7 @@ pub(super) static ROUGHNESS: Keys = Keys::new(
     &[
         FILE,
         key("channel", Is::Text, "Its channel."),
-        key("space", Is::Word(|| of(&words::SPACES)), "How the codes are spread."),
+        key("space", Is::Word(|| ids(&words::SPACES)), "How the codes are spread."),
         key("holds", Is::Word(|| vec!["roughness", "gloss"]), "Roughness, or 1 - roughness."),
         key("from", Is::Section(&FROM), "The codes tell of another lobe."),
     ],
@@ -317,7 +317,7 @@ pub(super) static FROM: Keys = Keys::new(
         needed("lobe", Is::Word(lobes), "lobe = \"blinn-phong\"", "Its parametrisation."),
         needed("range", Is::Pair, "range = [1, 1024]", "Numbers that the codes 0 and 1 stand for."),
         key("log", SWITCH, "The codes are spread over the logarithm."),
-        key("rule", Is::Word(|| of(&words::RULES)), "The nearest lobe, or that of the same peak."),
+        key("rule", Is::Word(|| ids(&words::RULES)), "The nearest lobe, or that of the same peak."),
         key("second", Is::Text, "Channel of the second number."),
         key("angle", Is::Text, "Channel of the angle of the first axis: codes 0 to 1 are half a turn."),
     ],
@@ -330,7 +330,7 @@ pub(super) static SBRDF: Keys = Keys::new(
         needed("model", Is::Word(|| vec![sbrdf::MODEL]), "model = \"lafortune\"", "The model of a lobe."),
         key("lobes", Is::Count, "Lobes of a texel, 1 to 3."),
         key("residual", Is::Number, "Fit fewer lobes if the relative residual stays below this."),
-        key("normalise", Is::Word(|| of(&words::NORMALISE)), "What a lobe is divided by."),
+        key("normalise", Is::Word(|| ids(&words::NORMALISE)), "What a lobe is divided by."),
         key(sbrdf::BASE, Is::Any(COLOURS), "Linear base colour, or an image of it."),
         key(sbrdf::METALLIC, Is::Any(NUMBERS), "A number, or an image."),
         key(sbrdf::BRDF, Is::Text, "A tabulated BRDF in place of the maps."),
@@ -343,14 +343,14 @@ static NUMBERS: &[Is] = &[Is::Number, Is::Text, Is::Section(&NUMBER)];
 /// How an image of colours is read.
 pub(super) static COLOUR: Keys = Keys::new(
     sbrdf::BASE,
-    &[FILE, key("space", Is::Word(|| of(&words::SPACES)), "How the codes are spread.")],
+    &[FILE, key("space", Is::Word(|| ids(&words::SPACES)), "How the codes are spread.")],
 );
 
 /// How an image of a number is read.
 pub(super) static NUMBER: Keys =
     Keys::new(sbrdf::METALLIC, &[FILE, key("channel", Is::Text, "Its channel.")]);
 
-fn of<T>(list: &[(&'static str, T)]) -> Vec<&'static str> {
+fn ids<T>(list: &[(&'static str, T)]) -> Vec<&'static str> {
     list.iter().map(|(word, _)| *word).collect()
 }
 

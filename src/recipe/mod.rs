@@ -112,6 +112,7 @@
 mod diagnostic;
 mod document;
 mod engine;
+#[cfg(feature = "engines")]
 mod engines;
 mod index_file;
 mod keys;
@@ -129,11 +130,16 @@ mod write_map;
 
 pub use diagnostic::{Diagnostic, RecipeError};
 pub use engine::{Engine, EngineFile, Reader, Roughness, Shipped, engine};
+#[cfg(feature = "engines")]
 pub use engines::ENGINES;
 pub use load::{LoadError, load};
 pub use preset::{PRESETS, Preset, preset};
 pub use schema::schema;
 pub use write::{text, text_with_maps};
+
+/// Every engine: none without the feature `engines`.
+#[cfg(not(feature = "engines"))]
+pub static ENGINES: &[Engine] = &[];
 
 use crate::plan::faults::Faults;
 use crate::plan::resolve::resolve;

@@ -1,6 +1,7 @@
 //! Charts with two logarithmic axes: curves with marks, level lines, a legend; as SVG and as PNG, with the same words in both.
 
 use super::drawing::{COLOURS, Drawing, INK, Stroke};
+use crate::picture::PictureError;
 
 /// Size of the picture, and the frame inside it: left, top, right, bottom.
 const SIZE: [f64; 2] = [960.0, 600.0];
@@ -100,7 +101,7 @@ impl Chart {
     ///
     /// # Errors
     /// What the PNG encoder says.
-    pub fn png(&self) -> Result<Vec<u8>, image::ImageError> {
+    pub fn png(&self) -> Result<Vec<u8>, PictureError> {
         self.drawing().png()
     }
 }

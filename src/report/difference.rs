@@ -1,6 +1,7 @@
 //! The difference of two pictures, drawn: for each channel the first, the second, and how far they are apart.
 
 use crate::encode::Image;
+use crate::picture::{PictureError, write_png};
 
 /// White gap between the panels, in pixels.
 const GAP: usize = 4;
@@ -10,7 +11,7 @@ const GAP: usize = 4;
 ///
 /// # Errors
 /// What the PNG encoder says.
-pub fn draw(a: &Image, b: &Image) -> Result<Option<Vec<u8>>, image::ImageError> {
+pub fn draw(a: &Image, b: &Image) -> Result<Option<Vec<u8>>, PictureError> {
     let common: Vec<_> = a
         .channels
         .iter()
@@ -21,8 +22,9 @@ pub fn draw(a: &Image, b: &Image) -> Result<Option<Vec<u8>>, image::ImageError> 
         return Ok(None);
     }
     let (w, h) = (a.width, a.height);
-    let size = |n: usize, count: usize| u32::try_from(n * count + GAP * (count - 1)).unwrap_or(u32::MAX);
-    let mut canvas = image::GrayImage::from_pixel(size(w, 3), size(h, common.len()), image::Luma([255]));
+    let size = |n: usize, count: usize| n * count + GAP * (count - 1);
+    let [wide, high] = [size(w, 3), size(h, common.len())];
+    let mut canvas = vec![255; wide * high];
     for (row, (p, q)) in common.iter().enumerate() {
         let largest = |values: &[f64]| values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         let apart: Vec<f64> = p.values.iter().zip(&q.values).map(|(a, b)| (a - b).abs()).collect();
@@ -30,17 +32,14 @@ pub fn draw(a: &Image, b: &Image) -> Result<Option<Vec<u8>>, image::ImageError> 
         let panels = [(&p.values, top), (&q.values, top), (&apart, largest(&apart))];
         for (column, (values, top)) in panels.into_iter().enumerate() {
             for (i, v) in values.iter().enumerate() {
-                let x = u32::try_from(column * (w + GAP) + i % w).unwrap_or(u32::MAX);
-                let y = u32::try_from(row * (h + GAP) + i / w).unwrap_or(u32::MAX);
-                if let Some(pixel) = canvas.get_pixel_mut_checked(x, y) {
-                    pixel.0 = [grey(*v, top)];
+                let (x, y) = (column * (w + GAP) + i % w, row * (h + GAP) + i / w);
+                if let Some(pixel) = canvas.get_mut(y * wide + x) {
+                    *pixel = grey(*v, top);
                 }
             }
         }
     }
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    canvas.write_to(&mut bytes, image::ImageFormat::Png)?;
-    Ok(Some(bytes.into_inner()))
+    write_png([wide, high], 1, &canvas).map(Some)
 }
 
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [0, 255] first")]

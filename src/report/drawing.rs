@@ -2,6 +2,7 @@
 //! pixels are strokes ([`super::letters`]), so that no font of any system enters a file.
 
 use super::letters;
+use crate::picture::{PictureError, write_png};
 
 /// Height of letters in pixels.
 const LETTERS: f64 = 10.0;
@@ -135,15 +136,14 @@ impl Drawing {
     }
 
     /// The picture as an 8-bit RGB PNG.
-    pub(super) fn png(&self) -> Result<Vec<u8>, image::ImageError> {
-        let [w, h] = self.size.map(|v| u32::try_from(pixel(v.ceil())).unwrap_or(1));
-        let mut canvas = image::RgbImage::from_pixel(w, h, image::Rgb([255; 3]));
+    pub(super) fn png(&self) -> Result<Vec<u8>, PictureError> {
+        let mut canvas = Canvas::white(self.size.map(|v| usize::try_from(pixel(v.ceil())).unwrap_or(1)));
         #[cfg(feature = "report")]
         for field in &self.fields {
             for (i, p) in (0..).zip(&field.pixels) {
                 let (x, y) = (field.at[0] + i % field.width, field.at[1] + i / field.width);
-                if let Some(under) = canvas.get_pixel_mut_checked(x, y) {
-                    under.0 = *p;
+                if let Some(under) = canvas.pixel(x as usize, y as usize) {
+                    *under = *p;
                 }
             }
         }
@@ -162,9 +162,24 @@ impl Drawing {
                 }
             }
         }
-        let mut bytes = std::io::Cursor::new(Vec::new());
-        canvas.write_to(&mut bytes, image::ImageFormat::Png)?;
-        Ok(bytes.into_inner())
+        write_png(canvas.size, 3, canvas.pixels.as_flattened())
+    }
+}
+
+/// Pixels that are drawn on, row by row.
+struct Canvas {
+    /// Width and height.
+    size: [usize; 2],
+    pixels: Vec<[u8; 3]>,
+}
+
+impl Canvas {
+    fn white([width, height]: [usize; 2]) -> Canvas {
+        Canvas { size: [width, height], pixels: vec![[255; 3]; width * height] }
+    }
+
+    fn pixel(&mut self, x: usize, y: usize) -> Option<&mut [u8; 3]> {
+        if x < self.size[0] { self.pixels.get_mut(y * self.size[0] + x) } else { None }
     }
 }
 
@@ -235,7 +250,7 @@ fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
 }
 
 /// Blends a segment in: coverage falls over one pixel at the edge of the line.
-fn segment(canvas: &mut image::RgbImage, a: [f64; 2], b: [f64; 2], stroke: &Stroke) {
+fn segment(canvas: &mut Canvas, a: [f64; 2], b: [f64; 2], stroke: &Stroke) {
     let reach = 0.5 * stroke.width + 1.0;
     let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
     let length2 = (dx * dx + dy * dy).max(1e-12);
@@ -246,10 +261,9 @@ fn segment(canvas: &mut image::RgbImage, a: [f64; 2], b: [f64; 2], stroke: &Stro
             let t = ((px * dx + py * dy) / length2).clamp(0.0, 1.0);
             let (ex, ey) = (px - t * dx, py - t * dy);
             let cover = (0.5 * stroke.width + 0.5 - (ex * ex + ey * ey).sqrt()).clamp(0.0, 1.0);
-            let at = u32::try_from(x).ok().zip(u32::try_from(y).ok());
-            if let Some(p) = at.filter(|_| cover > 0.0).and_then(|(x, y)| canvas.get_pixel_mut_checked(x, y))
-            {
-                for (c, s) in p.0.iter_mut().zip(stroke.colour) {
+            let at = usize::try_from(x).ok().zip(usize::try_from(y).ok());
+            if let Some(p) = at.filter(|_| cover > 0.0).and_then(|(x, y)| canvas.pixel(x, y)) {
+                for (c, s) in p.iter_mut().zip(stroke.colour) {
                     // darker wins, so that overlapping segments of a curve do not add up
                     *c = (*c).min(blend(255, s, cover));
                 }

@@ -9,6 +9,7 @@ use super::image::{Image, Source};
 use super::json::Node;
 use super::uri::{Checked, check_uri};
 use crate::picture::Wrap;
+use serde_json::Value;
 use std::collections::BTreeSet;
 
 /// Extensions of a texture that name an image of their own, in the order in which they are looked at after the core `source`.
@@ -96,6 +97,21 @@ pub(super) fn images(
         all.push(Image { index, at: image.path(), source });
     }
     Ok(all)
+}
+
+/// Where the bytes of one image of a parsed document are, whether a material uses it or not. `bin`: the binary chunk of a GLB.
+///
+/// # Errors
+/// [`Fault`] for a member of the wrong type or a URI that is not followed.
+pub fn image_source(
+    tree: &Value,
+    image: usize,
+    bin: Option<&[u8]>,
+    limits: &Limits,
+) -> Result<Source, Fault> {
+    let found = images(&Node::root(tree), &BTreeSet::from([image]), bin, limits)?;
+    let missing = || Source::Missing("it is not there".to_owned());
+    Ok(found.into_iter().next().map_or_else(missing, |image| image.source))
 }
 
 pub(super) fn at_uri(uri: &Node<'_>, part: Option<[u64; 2]>, limits: &Limits) -> Result<Source, Fault> {

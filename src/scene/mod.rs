@@ -47,6 +47,7 @@ use std::path::Path;
 pub use asks::{Answer, Subject, dielectric_f0};
 pub use collect::{Joined, analyse, analyse_with};
 pub use data::{DataError, decode as decode_data};
+pub use embedded::image_source;
 pub use error::{Fault, SceneError};
 pub use extension::{
     ANISOTROPIC, AREA_LIGHT, Asks, COAT, EXTENSIONS, Extension, FILM, FUZZ, GGX, GLASS, PHASE, ROUGH_DIFFUSE,

@@ -30,7 +30,8 @@ pub static INFO: TableInfo = TableInfo {
     formula: "T(d) = exp(-sigma_t d)",
     sources: &[
         Source::new(cite::CHANDRASEKHAR_1960, "section 7"),
-        Source::new(cite::POPE_FRY_1997, "Table 3 (the defaults; values recalled)").by_default(),
+        Source::new(cite::POPE_FRY_1997, "absorption at 650, 550 and 450 nm, in 1/m (the defaults)")
+            .by_default(),
     ],
     coordinates: &["path"],
     layouts: &[

@@ -51,7 +51,7 @@ pub static INFO: TableInfo = TableInfo {
     sources: &[
         Source::new(cite::KULLA_CONTY_2017, "the slides on energy conservation (f_ms)")
             .of(|role| !matches!(role, Role::Gain(_))),
-        Source::new(cite::TURQUIN_2019, "Eq. 16 (number recalled)").of(|role| matches!(role, Role::Gain(_))),
+        Source::new(cite::TURQUIN_2019, "Eq. 16, by MaterialX").of(|role| matches!(role, Role::Gain(_))),
     ],
     coordinates: &["mu"],
     layouts: &[

@@ -17,10 +17,11 @@ pub static INFO: TableInfo = TableInfo {
     formula: "schlick: F0 + (F90 - F0)(1 - mu)^5; generalised: exponent p; f82-tint: - b mu (1 - mu)^6; lazanyi: F0(n, k), - a mu (1 - mu)^q; \
         dielectric: (1 - mu_t)^5 and F = 1 beyond the critical angle for eta < 1",
     sources: &[
-        Source::new(cite::SCHLICK_1994, "Eq. 15 (number recalled)"),
+        Source::new(cite::SCHLICK_1994, "the approximation of F"),
         Source::new(cite::HOFFMAN_2019, "the generalised exponent").when("variant", &["generalised"]),
         Source::new(cite::KUTZ_2021, "F82 tint").when("variant", &["f82-tint"]),
-        Source::new(cite::LAZANYI_2005, "Eq. 7 (number recalled)").when("variant", &["lazanyi"]),
+        Source::new(cite::LAZANYI_2005, "the formula with its compensating term")
+            .when("variant", &["lazanyi"]),
     ],
     coordinates: &["mu"],
     layouts: &[

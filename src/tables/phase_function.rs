@@ -35,10 +35,9 @@ pub(super) const PARAMS: &[Param] = &[
 pub(super) const SOURCES: &[Source] = &[
     Source::new(cite::HENYEY_GREENSTEIN_1941, "Eq. 2").when("phase", &["henyey-greenstein", "fog"]),
     Source::new(cite::BORN_WOLF_1999, "section 14.5 (Rayleigh)").when("phase", &["rayleigh"]),
-    Source::new(cite::DRAINE_2003, "Eq. 5 (number recalled)").when("phase", &["draine", "fog"]),
+    Source::new(cite::DRAINE_2003, "the phase function of two parameters").when("phase", &["draine", "fog"]),
     Source::new(cite::JENDERSIE_DEON_2023, "Eq. 7 to 10 (fog)").when("phase", &["fog"]),
-    Source::new(cite::CHANDRASEKHAR_1960, "section 3 (isotropic scattering; number recalled)")
-        .when("phase", &["isotropic"]),
+    Source::new(cite::CHANDRASEKHAR_1960, "isotropic scattering").when("phase", &["isotropic"]),
 ];
 
 /// Registry entry.

@@ -161,7 +161,7 @@ fn moments(from: f64, to: f64, nodes: &[f64], scales: &[f64]) -> Vec<Node> {
             let lambda = low + (high - low) * x;
             let light = (high - low) * w * d65(lambda);
             let seen = xyz_to_srgb(cie_xyz(lambda)).map(|v| light * v);
-            at(nodes, scales, (lambda - from) / length, &mut lagrange);
+            lagrange_at(nodes, scales, (lambda - from) / length, &mut lagrange);
             for ((_, weight), l) in out.iter_mut().zip(&lagrange) {
                 for (w, v) in weight.iter_mut().zip(seen) {
                     *w += l * v;
@@ -174,7 +174,7 @@ fn moments(from: f64, to: f64, nodes: &[f64], scales: &[f64]) -> Vec<Node> {
 }
 
 /// Lagrange's polynomials at x.
-fn at(nodes: &[f64], scales: &[f64], x: f64, out: &mut [f64]) {
+fn lagrange_at(nodes: &[f64], scales: &[f64], x: f64, out: &mut [f64]) {
     if let Some(hit) = nodes.iter().position(|node| (x - node).abs() == 0.0) {
         out.fill(0.0);
         out[hit] = 1.0;

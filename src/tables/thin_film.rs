@@ -30,7 +30,7 @@ pub static INFO: TableInfo = TableInfo {
     formula: "int R(lambda) D65 (x, y, z) dlambda to linear sRGB, R = |r12 + r23 e^(i delta)|^2 / |1 + r12 r23 e^(i delta)|^2, delta = 4 pi n2 d cos theta_2 / lambda",
     sources: &[
         Source::new(cite::BELCOUR_BARLA_2017, "section 3 (Airy)").of(is_daylight),
-        Source::new(cite::BELCOUR_BARLA_2017, "Eq. 6 to 10 (series; numbers recalled)")
+        Source::new(cite::BELCOUR_BARLA_2017, "Eq. 10, by Cycles (series)")
             .of(|role| matches!(role, Role::FilmSeries(_))),
         Source::new(cite::BORN_WOLF_1999, "section 7.6.1"),
         Source::new(cite::CIE_11664_1, "Table 1, CIE 1931 observer").of(is_daylight),

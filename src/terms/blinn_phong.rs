@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_1_PI;
 
 /// `D = (n + 2)/(2π) cosⁿθm`, so that `∫ D cos θm dωm = 1`.
 ///
-/// Source: [Walter2007](crate::cite::WALTER_2007) Eq. 30 (number recalled); Blinn's lobe with the norm of a
+/// Source: [Walter2007](crate::cite::WALTER_2007) (the Phong distribution; [BBM](crate::cite::BBM) `ndf/phong.h` has the same form); Blinn's lobe with the norm of a
 /// distribution of normals, which is not the norm of a BRDF (that one is near (n + 8)/8π).
 /// Units: sr⁻¹. Domain: n in [0, 1e7], `wm` unit. Range: ≥ 0, finite; 0 for `wm.z` ≤ 0.
 /// Accuracy: relative 1e-15 (1 + n |ln cos θ|) (`tests/terms.rs`).
@@ -31,7 +31,7 @@ pub fn equivalent_alpha(n: f64) -> f64 {
 
 /// A facet normal with density `D cos θm`: `cos θm = u1^(1/(n + 2))`, azimuth 2π u2.
 ///
-/// Source: [Walter2007](crate::cite::WALTER_2007) Eq. 31 (number recalled). Domain: u in [0, 1]².
+/// Source: [Walter2007](crate::cite::WALTER_2007) (the Phong distribution; [BBM](crate::cite::BBM) `ndf/phong.h` draws the same). Domain: u in [0, 1]².
 /// The sine is −expm1 of twice the logarithm: it keeps its digits for n = 1e7. u1 = 0 gives the horizon.
 #[must_use]
 pub fn sample_d(n: f64, u: DVec2) -> DVec3 {

@@ -42,7 +42,7 @@ impl Dipole {
     /// Diffuse reflectance at distance `r`, `R_d = α'/(4π) Σ z (1 + σtr d) exp(−σtr d)/d³`.
     ///
     /// z_r = 1/σt', z_v = z_r (1 + 4A/3), d = √(r² + z²), σtr = √(3 σa σt'), α' = σs'/σt'.
-    /// Source: [Jensen and Buhler 2002](crate::cite::JENSEN_2002) Eq. 2 (number recalled). The second term of
+    /// Source: [Jensen and Buhler 2002](crate::cite::JENSEN_2002) for both terms. The second term of
     /// [Jensen2001](crate::cite::JENSEN_2001) Eq. 4 as printed has the wrong dimension.
     /// Units: 1/length². Domain: r ≥ 0. Range: > 0, finite. Accuracy: relative 1e-14 (`tests/terms.rs`).
     #[must_use]
@@ -60,7 +60,7 @@ impl Dipole {
 
     /// Total diffuse reflectance `2π ∫ R_d r dr = (α'/2)(1 + exp(−4As/3)) exp(−s)`, `s = √(3 (1 − α'))`.
     ///
-    /// Source: [Jensen and Buhler 2002](crate::cite::JENSEN_2002) Eq. 3 (number recalled); checked against the integral.
+    /// Source: [Jensen and Buhler 2002](crate::cite::JENSEN_2002) ; checked against the integral.
     /// Range: (0, 1]; `sigma_a` = 0 gives 1 for every eta. Accuracy: relative 1e-14 (`tests/terms.rs`).
     #[must_use]
     pub fn total(&self) -> f64 {

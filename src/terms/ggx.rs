@@ -119,7 +119,7 @@ impl Ndf for Ggx {
 
     /// A visible normal by the spherical-cap routine: c uniform on the cap z > −v.z round +z, m ∝ c + v.
     ///
-    /// Source: [Dupuy and Benyoub 2023](crate::cite::DUPUY_BENYOUB_2023) listing 3 (number recalled).
+    /// Source: [Dupuy and Benyoub 2023](crate::cite::DUPUY_BENYOUB_2023) (spherical caps); [MaterialX](crate::cite::MATERIALX) `mx_ggx_importance_sample_VNDF` draws the same.
     /// Written so that 1 ± z are sums of positive terms: no digits are lost for `wo` at grazing.
     /// Guard: within about 1e-15 of u2 = 1 c may be −v to the last bit; the normal is then one of the horizon, and may
     /// face away from `wo` (density 0). Numbers of 32 bits do not get there.

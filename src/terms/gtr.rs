@@ -13,7 +13,7 @@ use std::f64::consts::FRAC_1_PI;
 ///
 /// The norm is 0/0 at γ = 1 and at α = 1; it is formed as `c = φ(L)/(π φ((1 − γ) L))`, φ(t) = (eᵗ − 1)/t, L = ln α²,
 /// which is regular at both. The base is α² cos²θ + sin²θ, without cancellation for small α.
-/// Source: [Burley2012](crate::cite::BURLEY_2012) App. B Eqs. 1 to 3 (numbers recalled).
+/// Source: [Burley2012](crate::cite::BURLEY_2012) App. B.2; Eq. 4 is the limit at γ = 1, Eq. 13 with two widths at γ = 2 is GGX.
 /// Units: sr⁻¹. Domain: α in (0, 2], γ in (0, 10], `wm` unit. Range: ≥ 0, finite; 0 for `wm.z` ≤ 0.
 /// Guard: α below [`ALPHA_FLOOR`] counts as that. Law: `∫ D cos θm dωm = 1`.
 /// Accuracy: relative 1e-13 (`tests/terms.rs`).
@@ -32,7 +32,7 @@ pub fn d(alpha: f64, gamma: f64, wm: DVec3) -> f64 {
 /// A facet normal with density `D cos θm` from (u1, u2); azimuth 2π u2.
 ///
 /// `cos²θ = (1 − [α^(2(1−γ))(1 − u1) + u1]^(1/(1−γ)))/(1 − α²)`, for γ = 1 `(1 − α^(2(1−u1)))/(1 − α²)`.
-/// Source: [Burley2012](crate::cite::BURLEY_2012) App. B Eqs. 2 and 5 (numbers recalled), in one form for all γ and α:
+/// Source: [Burley2012](crate::cite::BURLEY_2012) App. B.2, in one form for all γ and α:
 /// with L = ln α², x = (1 − γ)L, ρ = log1p((eˣ − 1)(1 − u1))/x and τ = 1 − ρ = −log1p((e⁻ˣ − 1) u1)/x,
 /// `cos²θ = ρ φ(ρL)/φ(L)` and `sin²θ = e^(ρL) τ φ(τL)/φ(L)`, so neither is a difference.
 /// Domain: u in [0, 1]². Guard: as [`d`].

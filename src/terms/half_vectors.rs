@@ -115,7 +115,7 @@ const STEPS: usize = 160;
 pub fn distance(a: &Lobe, b: &Lobe) -> f64 {
     let (ea, eb) = (a.even(), b.even());
     if a.is_isotropic() && b.is_isotropic() {
-        return apart(&a.slice(0.5, ea), &b.slice(0.5, eb));
+        return slice_difference(&a.slice(0.5, ea), &b.slice(0.5, eb));
     }
     let mut sum = 0.0;
     // equal masses of the wider axis ratio lie between the nodes: tan of the azimuth is stretched by the ratio of widths
@@ -126,7 +126,7 @@ pub fn distance(a: &Lobe, b: &Lobe) -> f64 {
         let scaled = tangent * stretch;
         let c = 1.0 / (1.0 + scaled * scaled);
         let weight = stretch * (1.0 + tangent * tangent) * c;
-        sum += weight * apart(&a.slice(c, ea), &b.slice(c, eb));
+        sum += weight * slice_difference(&a.slice(c, ea), &b.slice(c, eb));
     }
     sum / AZIMUTHS as f64
 }
@@ -140,7 +140,7 @@ fn stretch(lobe: &Lobe) -> f64 {
 }
 
 /// Half the integral of the absolute difference of two slices.
-fn apart(a: &Slice, b: &Slice) -> f64 {
+fn slice_difference(a: &Slice, b: &Slice) -> f64 {
     let shares = libm::log(a.share / b.share);
     let excess = |t: f64| shares + a.shape.log_density(t) - b.shape.log_density(t);
     let lowest = a.shape.scale().min(b.shape.scale()) * 1e-8;

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 /// Geometry over cosines, `G/(4 mu_o mu_i) ≈ 1/|wo + wi|² = 1/(4 (wi·wh)²)`.
 ///
-/// Source: [Kelemen2001](crate::cite::KELEMEN_2001) (equation number not verified). Units: 1. Range: [1/4, ∞).
+/// Source: [Kelemen2001](crate::cite::KELEMEN_2001) (the visibility of a half vector). Units: 1. Range: [1/4, ∞).
 /// Symmetric to the bit. Guard: opposite directions, |wo + wi| = 0, give 0; two directions above the surface are not.
 #[must_use]
 pub fn visibility(wo: DVec3, wi: DVec3) -> f64 {

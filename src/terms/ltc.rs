@@ -71,7 +71,7 @@ impl Ltc {
     ///
     /// Vertices are taken through M⁻¹ and clipped at z = 0; then `I = Σ θ_ij n_ij·z/(2π)` over the edges, θ the angle between
     /// neighbours and n the normal of their plane; θ by atan2, as acos loses half the digits for short edges.
-    /// Source: [Heitz2016](crate::cite::HEITZ_2016) Eq. 11 (number recalled), after Lambert. Range: [0, 1]; its negative if
+    /// Source: [Heitz2016](crate::cite::HEITZ_2016) for M, after Lambert; [ltc_quad.fs of the authors](crate::cite::HEITZ_2016) sums the same edges. Range: [0, 1]; its negative if
     /// the polygon is clockwise. Accuracy: 1e-14 absolute (`tests/terms.rs`).
     #[must_use]
     pub fn form_factor(&self, polygon: &[DVec3]) -> f64 {

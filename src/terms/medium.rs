@@ -19,7 +19,7 @@ pub fn loss(sigma_t: f64, d: f64) -> f64 {
 
 /// Radiance of a glowing slab, `L = (j/σt)(1 − exp(−σt d))`, j the emission per length; `j d` where nothing absorbs.
 ///
-/// Source: [Chandrasekhar1960](crate::cite::CHANDRASEKHAR_1960) §7 Eq. 53 (number recalled), constant source function.
+/// Source: [Chandrasekhar1960](crate::cite::CHANDRASEKHAR_1960) §7 (the formal solution), constant source function.
 /// Units: those of j times length. Accuracy: relative 1e-15 (`tests/terms.rs`).
 #[must_use]
 pub fn slab_emission(j: f64, sigma_t: f64, d: f64) -> f64 {

@@ -36,7 +36,7 @@ pub fn colour_series(f_avg: f64, e_avg: f64) -> f64 {
 
 /// Turquin's factor of the single-scattering lobe, `1 + F0 (1 − E(mu_o))/E(mu_o)`.
 ///
-/// Source: [Turquin2019](crate::cite::TURQUIN_2019) Eq. 16 (number recalled). View side only, so not reciprocal. Domain: E in
+/// Source: [Turquin2019](crate::cite::TURQUIN_2019) Eq. 16, as [MaterialX](crate::cite::MATERIALX) `mx_ggx_energy_compensation` quotes it. View side only, so not reciprocal. Domain: E in
 /// (0, 1], F0 in [0, 1]. Range: ≥ 1. Guard: E = 0 gives 1.
 #[must_use]
 pub fn turquin(f0: f64, e_mu: f64) -> f64 {
@@ -57,7 +57,7 @@ pub struct FdezAguera {
 /// Multiple scattering from the two channels of a split-sum table.
 ///
 /// `F_ms = F_ss E_ss F_avg/(1 − F_avg E_ms)`, `E_ms = 1 − (A + B)`, `F_avg = F0 + (1 − F0)/21`.
-/// Source: [FdezAguera2019](crate::cite::FDEZ_AGUERA_2019) Eqs. 8 to 12 (numbers recalled). A widely read page prints
+/// Source: [FdezAguera2019](crate::cite::FDEZ_AGUERA_2019) (the split sum; `F_brdf_multi_scatter` of Blender's EEVEE is the same). A widely read page prints
 /// `1 − FssEss + FmsEms` for the rest, which adds energy. Domain: A, B ≥ 0 with A + B ≤ 1, F0 in [0, 1].
 /// Law: F0 = 1 gives single + multiple = 1. Range: each in [0, 1].
 #[must_use]

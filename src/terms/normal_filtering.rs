@@ -17,7 +17,7 @@ pub fn toksvig(power: f64, mean_length: f64) -> f64 {
 /// Width widened by the variance of the normals inside a pixel, `α'² = min(1, α² + min(2 σ² d², κ))`.
 ///
 /// `d2` is |∂n/∂x|² + |∂n/∂y|² in screen space; σ² = 0.25 and κ = 0.18 are usual. The 2 turns a variance of slopes into α².
-/// Source: [Tokuyoshi and Kaplanyan 2019](crate::cite::TOKUYOSHI_KAPLANYAN_2019) listing 1 (number recalled), isotropic.
+/// Source: [Tokuyoshi and Kaplanyan 2019](crate::cite::TOKUYOSHI_KAPLANYAN_2019) isotropic, as [Filament](crate::cite::FILAMENT_SHADERS) `normalFiltering` has it.
 /// Domain: alpha in [0, 1], the rest ≥ 0. Range: [alpha, 1]. Accuracy: 2 ulp (`tests/terms.rs`).
 #[must_use]
 pub fn tokuyoshi_kaplanyan(alpha: f64, d2: f64, sigma2: f64, kappa: f64) -> f64 {
@@ -38,7 +38,7 @@ pub struct Lean {
 impl Lean {
     /// Covariance xx, xy, yy: moments less the mean's, plus 1/s; its diagonal and determinant are kept ≥ 0.
     ///
-    /// Source: [Olano and Baker 2010](crate::cite::OLANO_BAKER_2010) Eq. 9 (number recalled). The difference cancels for steep
+    /// Source: [Olano and Baker 2010](crate::cite::OLANO_BAKER_2010) (the covariance of the filtered map). The difference cancels for steep
     /// means; a map stored in half floats leaves noise there, hence the guard.
     #[must_use]
     pub fn covariance(&self) -> [f64; 3] {
@@ -53,7 +53,7 @@ impl Lean {
     /// Density of slopes, `exp(−(h − B)ᵀ Σ⁻¹ (h − B)/2)/(2π √|Σ|)`.
     ///
     /// `slope` is wh.xy/wh.z. Beckmann's D is this over `wh.z`⁴, with α² = 2/s.
-    /// Source: [Olano and Baker 2010](crate::cite::OLANO_BAKER_2010) Eq. 5 (number recalled). Unit 1. Range: ≥ 0, finite.
+    /// Source: [Olano and Baker 2010](crate::cite::OLANO_BAKER_2010) (the Gaussian of slopes). Unit 1. Range: ≥ 0, finite.
     /// Guard: a singular Σ (only for s = ∞) gives 0. Accuracy: relative 1e-13 (`tests/terms.rs`).
     #[must_use]
     pub fn slope_density(&self, slope: [f64; 2]) -> f64 {

@@ -75,7 +75,7 @@ pub fn sample_henyey_greenstein(g: f64, u: f64) -> f64 {
 /// Draine, `p = p_HG (1 + α cos²θ)/(1 + α (1 + 2g²)/3)`.
 ///
 /// α = 0 is Henyey-Greenstein, g = 0 with α = 1 Rayleigh, α = 1 Cornette and Shanks.
-/// Source: [Draine2003](crate::cite::DRAINE_2003) Eq. 5 (number recalled). Domain: |g| < 1, α ≥ 0. Range: > 0.
+/// Source: [Draine2003](crate::cite::DRAINE_2003) ; [Jendersie and d'Eon 2023](crate::cite::JENDERSIE_DEON_2023) use the same. Domain: |g| < 1, α ≥ 0. Range: > 0.
 /// Accuracy: relative 1e-14 (`tests/terms.rs`).
 #[must_use]
 pub fn draine(g: f64, alpha: f64, cos_theta: f64) -> f64 {
@@ -158,7 +158,7 @@ fn second_moment_series(g: f64, c: f64) -> f64 {
 
 /// Mean cosine of [`draine`], `g (1 + α (3 + 2g²)/5)/(1 + α (1 + 2g²)/3)`.
 ///
-/// Source: [Draine2003](crate::cite::DRAINE_2003) Eq. 7 (number recalled); checked by quadrature (`tests/terms.rs`).
+/// Source: [Draine2003](crate::cite::DRAINE_2003) ; checked by quadrature (`tests/terms.rs`).
 #[must_use]
 pub fn draine_mean_cosine(g: f64, alpha: f64) -> f64 {
     let g2 = g * g;

@@ -53,7 +53,7 @@ pub fn facet(wo: DVec3, wi: DVec3, eta: f64) -> Option<Refracting> {
 /// Masking and shadowing of two directions on opposite sides.
 ///
 /// Source: [Walter2007](crate::cite::WALTER_2007) Eq. 23 (product); [Heitz2014](crate::cite::HEITZ_2014) §6.3 and the beta form of
-/// [Heitz and others 2016](crate::cite::HEITZ_2016_MULTIPLE) (section not verified). Range: [0, 1]; 0 where a cosine is 0.
+/// [Heitz and others 2016](crate::cite::HEITZ_2016_MULTIPLE) Appendix A. Range: [0, 1]; 0 where a cosine is 0.
 #[must_use]
 pub fn g2<N: Ndf + ?Sized>(across: Across, ndf: &N, wo: DVec3, wi: DVec3) -> f64 {
     match across {

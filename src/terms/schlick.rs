@@ -24,7 +24,7 @@ pub fn weight(cos_i: f64) -> f64 {
 
 /// Schlick's Fresnel factor `F = f0 + (f90 − f0)(1 − c)⁵`.
 ///
-/// Source: [Schlick1994](crate::cite::SCHLICK_1994) Eq. 15 (number recalled), with its 1 written as `f90`.
+/// Source: [Schlick1994](crate::cite::SCHLICK_1994) (the approximation of F), with its 1 written as `f90`.
 /// Domain: `cos_i` = wi·wm in [0, 1], `f0` and `f90` in [0, 1]. Range: between `f0` and `f90`.
 /// Accuracy: 4e-16 absolute (`tests/terms.rs`).
 #[must_use]

@@ -14,7 +14,7 @@ pub enum K {
 /// k of a width.
 ///
 /// Source: [Karis2013](crate::cite::KARIS_2013) Eq. 4 and the remark after it; [Schlick1994](crate::cite::SCHLICK_1994)
-/// Eq. 19 (numbers recalled). Domain: alpha in [0, 2]. Range: [0, 1.6].
+/// (its own k). Domain: alpha in [0, 2]. Range: [0, 1.6].
 #[must_use]
 pub fn k(kind: K, alpha: f64) -> f64 {
     match kind {
@@ -29,7 +29,7 @@ pub fn k(kind: K, alpha: f64) -> f64 {
 
 /// `G1 = mu/(mu (1 − k) + k)`.
 ///
-/// Source: [Schlick1994](crate::cite::SCHLICK_1994) Eq. 19 (number recalled). Range: [0, 1] for k in [0, 1]. Guard: k = 0 at
+/// Source: [Schlick1994](crate::cite::SCHLICK_1994) (the rational form of G1). Range: [0, 1] for k in [0, 1]. Guard: k = 0 at
 /// the horizon gives 1. It does not fulfil the weak white furnace of any distribution.
 #[must_use]
 pub fn g1(k: f64, mu: f64) -> f64 {

@@ -65,7 +65,7 @@ pub trait Ndf: Debug + Send + Sync {
 
     /// [`Ndf::g1`] with its support rule: 0 if `w` sees the back of the facet `wm`, (w·m)(w·n) ≤ 0.
     ///
-    /// Source: [Walter2007](crate::cite::WALTER_2007) Eq. 23 (number recalled).
+    /// Source: [Walter2007](crate::cite::WALTER_2007) (the product of two G1 and its support).
     fn g1_facet(&self, w: DVec3, wm: DVec3) -> f64 {
         if w.dot(wm) * w.z > 0.0 { self.g1(w) } else { 0.0 }
     }

@@ -153,7 +153,7 @@ impl Ndf for StudentT {
     /// Student's t distribution of normals.
     ///
     /// `D = (1 + X/(γ − 1))^(−γ)/(π αx αy cos⁴θ)`, X = ((x/αx)² + (y/αy)²)/z².
-    /// Source: [Ribardiere2017](crate::cite::RIBARDIERE_2017) Eq. 4 (number recalled).
+    /// Source: [Ribardiere2017](crate::cite::RIBARDIERE_2017) Eq. 18, by [appleseed](crate::cite::APPLESEED) `StdMDF::D`.
     /// Guard: `wm.z` ≤ 0 gives 0. For γ < 2 it grows without bound at the horizon, integrably.
     /// Accuracy: relative 1e-13 (`tests/terms.rs`).
     fn d(&self, wm: DVec3) -> f64 {
@@ -190,7 +190,8 @@ impl Ndf for StudentT {
 
     /// tan²θm = α² (γ − 1) ((1 − u1)^(1/(1 − γ)) − 1) in stretched slopes, azimuth 2π u2.
     ///
-    /// Source: [Ribardiere2017](crate::cite::RIBARDIERE_2017) (equation number not verified). Guard: u1 = 1 counts as
+    /// Source: [Ribardiere2017](crate::cite::RIBARDIERE_2017) Eqs. 16 and 17 (one width), 19 and 20, by
+    /// [appleseed](crate::cite::APPLESEED) `StdMDF::sample`. Guard: u1 = 1 counts as
     /// 1 − 2⁻⁵³.
     fn sample_d(&self, u: DVec2) -> DVec3 {
         let log = -libm::log1p(-u.x.clamp(0.0, 1.0 - 0.5 * f64::EPSILON));

@@ -158,7 +158,7 @@ pub fn sensitivity(channel: Channel, opd_nm: f64, shift: f64) -> f64 {
 ///
 /// `R = C0 + 2 Σ C_m wave(m OPD, m φ)`, `R* = T² R23/(1 − R12 R23)`, `C0 = R12 + R*`,
 /// `C_m = (R* − T)(R12 R23)^(m/2)`, φ = arg r21 + arg r23, OPD = 2 n2 d cos θ2. With the wave cos(2π OPD/λ + φ) and many
-/// orders it is [`airy`]. Source: [Belcour and Barla 2017](crate::cite::BELCOUR_BARLA_2017) Eqs. 6 to 8 (numbers recalled).
+/// orders it is [`airy`]. Source: [Belcour and Barla 2017](crate::cite::BELCOUR_BARLA_2017) Eq. 10, by [Cycles](crate::cite::CYCLES) `iridescence_airy_summation_channel`, which has the same `C0` and `C_m`.
 /// Domain: as [`airy`], `n2` ≥ 1; a film that reflects totally gives 1.
 #[must_use]
 pub fn series(film: &Film, cos_i: f64, orders: u32, wave: &dyn Fn(f64, f64) -> f64) -> Polarised {
@@ -195,7 +195,7 @@ const TO_RGB: [[f64; 3]; 3] = [
 
 /// Reflectance of unpolarised white light as linear RGB, by [`series`] over the [`sensitivity`] of the eye.
 ///
-/// Source: [Belcour and Barla 2017](crate::cite::BELCOUR_BARLA_2017) Eq. 10 (number recalled), matrix as in MaterialX.
+/// Source: [Belcour and Barla 2017](crate::cite::BELCOUR_BARLA_2017) Eq. 10, matrix as in [MaterialX](crate::cite::MATERIALX).
 /// `orders`: 2 or 3 are usual. Range: about [−0.1, 1.1]: cut series and matrix overshoot; renderers clamp to [0, 1].
 /// One index for all channels; a coloured metal is three films, of which each gives its channel.
 #[must_use]

@@ -18,7 +18,7 @@ pub fn g2(wo: DVec3, wi: DVec3, wm: DVec3, cos_d: f64) -> f64 {
 
 /// Masking alone, `G1 = min(1, 2 (n·m)(n·w)/(w·m))`; `cos_d` = w·m.
 ///
-/// Source: [Heitz2014](crate::cite::HEITZ_2014) §4.4 (number recalled). Range: [0, 1].
+/// Source: [Heitz2014](crate::cite::HEITZ_2014) §4.2. Range: [0, 1].
 /// Law: `∫ G1 D max(0, w·m) dωm = n·w`, as for Smith's.
 #[must_use]
 pub fn g1(w: DVec3, wm: DVec3, cos_d: f64) -> f64 {

@@ -50,7 +50,7 @@ pub(super) fn albedos(spec: &Spec) -> Vec<Sum> {
             sums.push(Sum { lobe, side, average, constant, terms });
         }
     };
-    for lobe in super::lobes::of(spec) {
+    for lobe in super::lobes::lobes_of(spec) {
         if matches!(lobe, Lobe::Other(other) if !other.info.laws.passive) {
             continue;
         }

@@ -45,7 +45,7 @@ impl Lobes {
 }
 
 /// The lobes that the channels of a table are of, each once.
-pub(super) fn of(spec: &Spec) -> Vec<Lobe> {
+pub(super) fn lobes_of(spec: &Spec) -> Vec<Lobe> {
     let mut lobes: Vec<Lobe> = Vec::new();
     for lobe in spec.layout.channels.iter().filter_map(|c| c.role.lobe()) {
         if !lobes.contains(&lobe) {

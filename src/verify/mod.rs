@@ -219,7 +219,7 @@ pub fn check_telling(
     let steps = Steps::new(declared.len(), tell);
     let check = |law: &&Law| {
         let outcome = (law.check)(&case);
-        steps.one();
+        steps.step();
         outcome
     };
     let outcomes: Vec<Outcome> = declared.par_iter().map(check).collect();

@@ -16,7 +16,7 @@ pub static LAW: Law = Law {
         64 seeded pairs each",
     code: 3001,
     formal: false,
-    concerns: |spec| lobes::of(spec).into_iter().any(|lobe| lobe.info(spec).is_some()),
+    concerns: |spec| lobes::lobes_of(spec).into_iter().any(|lobe| lobe.info(spec).is_some()),
     check,
 };
 
@@ -47,7 +47,7 @@ fn check(case: &Case<'_>) -> Outcome {
     let lobes = Lobes::new(case.spec());
     let mut seeds = seeds::Seeds::new(0x2ec1);
     let mut watch = Watch::default();
-    for lobe in lobes::of(case.spec()) {
+    for lobe in lobes::lobes_of(case.spec()) {
         for texel in seeds::texels(case.table, 8, 0x2ec2).into_iter().take_while(|_| case.goes_on()) {
             let point = case.table.grid.texel(texel);
             let Some(model) = lobes.build(lobe, point.values(), Side::Above) else { continue };

@@ -152,7 +152,7 @@ impl<'a> Probe<'a> {
         let steps = Steps::new(points.len(), tell);
         let grid = &self.bound.spec.grid;
         let places: Vec<Point> = points.iter().map(|x| grid.at_coordinates(x)).collect();
-        let done = |count: usize| (0..count).for_each(|_| steps.one());
+        let done = |count: usize| (0..count).for_each(|_| steps.step());
         let values = at_points(self.bound, &places, self.tolerance, self.cancel, &done);
         let fresh = |((x, point), value): ((&[f64; MAX_AXES], Point), Option<Sums>)| {
             let mut value = value?;

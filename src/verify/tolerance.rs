@@ -37,7 +37,7 @@ pub static TOLERANCES: &[Tolerance] = &[
 
 /// Looks a tolerance up; zero if there is none of that name.
 #[must_use]
-pub fn of(quantity: &str) -> Tolerance {
+pub fn of_quantity(quantity: &str) -> Tolerance {
     let none = Tolerance { quantity: "exact", absolute: 0.0, relative: 0.0, why: "bits must be equal" };
     TOLERANCES.iter().copied().find(|t| t.quantity == quantity).unwrap_or(none)
 }

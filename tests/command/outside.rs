@@ -45,7 +45,7 @@ fn a_file_without_metadata_is_known_by_the_manifest_beside_it() {
     assert_eq!(code(&o), 0, "{}{}", out(&o), err(&o));
     assert!(out(&o).contains("compared dfg.scale = R, dfg.bias = G"), "{}", out(&o));
     for (args, part) in [
-        (&["--raw", "6x5x2:half"][..], "there is none"),
+        (&["--raw", "6x5x2:half"][..], "no .bin file is given"),
         (&["--channels", "R"], "is not NAME=NAME"),
         (&["--channels", "R=a", "--by-position"], "cannot be used with"),
     ] {

@@ -5,7 +5,7 @@
     BRDFBAKE_FOREIGN=foreign-out cargo test --test files -- --ignored write_
     python3 tests/foreign/read_back.py foreign-out
 
-Every .exr, .png, .hdr and .npy below the folder is read, and .dds of blocks. Next to a file, `<name>.expected.json` (written by tests/foreign.rs) says
+Every .exr, .png, .hdr, .npy and .pfm below the folder is read, and .dds of blocks. Next to a file, `<name>.expected.json` (written by tests/foreign.rs) says
 which bits every channel must have; without it, the libraries are compared with each other and with the metadata in
 the file (size, channels, sample type), which is how the outputs of the command are checked.
 
@@ -207,6 +207,21 @@ def npy(path):
     return {n: (array[..., i], str(array.dtype)) for i, n in enumerate(names)}, expected["brdfbake"]
 
 
+def pfm(path):
+    """A map says nothing of itself: the expectation names its channels; components beyond them are 0."""
+    planes = list(openimageio(path)[0].values())
+    sidecar = sidecar_of(path)
+    if not sidecar.exists():
+        return {f"c{i}": (p, str(p.dtype)) for i, p in enumerate(planes)}, None
+    expected = json.loads(sidecar.read_text(encoding="utf-8"))
+    names = [c["id"] for c in json.loads(expected["brdfbake"])["channels"]]
+    same("channels", len(planes), 1 if len(names) == 1 else 3)
+    for rest in planes[len(names) :]:
+        if rest.any():
+            raise Difference("a component without channel is not empty")
+    return {n: (p, str(p.dtype)) for n, p in zip(names, planes)}, expected["brdfbake"]
+
+
 def check(path):
     if parts_of(path).exists():
         return check_parts(path)
@@ -214,9 +229,9 @@ def check(path):
         arrays, text = exr(path)
         channels = {name: (values, str(values.dtype)) for name, values in arrays.items()}
     else:
-        channels, text = {".png": png, ".hdr": hdr, ".npy": npy, ".dds": dds}[path.suffix](path)
-    if text is None and path.suffix == ".npy":
-        return "an array without metadata"
+        channels, text = {".png": png, ".hdr": hdr, ".npy": npy, ".pfm": pfm, ".dds": dds}[path.suffix](path)
+    if text is None and path.suffix in (".npy", ".pfm"):
+        return "numbers without metadata"
     if text is None:
         raise Difference("no metadata")
     told = json.loads(text)
@@ -262,7 +277,7 @@ def main():
     files = sorted(
         p
         for p in Path(sys.argv[1]).rglob("*")
-        if p.suffix in (".exr", ".png", ".hdr", ".npy") or p.suffix == ".dds" and made_of_blocks(p)
+        if p.suffix in (".exr", ".png", ".hdr", ".npy", ".pfm") or p.suffix == ".dds" and made_of_blocks(p)
     )
     if not files:
         print(f"no picture below {sys.argv[1]}", file=sys.stderr)

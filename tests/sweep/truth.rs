@@ -20,6 +20,10 @@ pub(crate) type Truth = Result<(f64, f64), &'static str>;
 /// Models without draws in `truth_test.csv`, and why.
 pub(crate) const WITHOUT: &[(&str, &str)] = &[
     (
+        "abc",
+        "a rule for its long tail in grooves is not written: known values of 50 digits and the law honest hold it",
+    ),
+    (
         "kelemen-matte",
         "a lobe over its own albedo, minutes a draw: tests/compensated.rs and the law honest hold it",
     ),

@@ -3,12 +3,17 @@
 //! Every slice is cut into blocks, row by row from the top left; blocks that reach beyond the edge repeat the last texel of
 //! their row or column. What a reader sees is what the blocks decode to, and that is what the reports compare.
 
+#[cfg_attr(not(feature = "blocks"), allow(dead_code, reason = "what writes blocks is left out"))]
 mod bc6h;
+#[cfg(feature = "blocks")]
 mod bc6h_line;
+#[cfg(feature = "blocks")]
 mod bc6h_search;
+#[cfg_attr(not(feature = "blocks"), allow(dead_code, reason = "what writes blocks is left out"))]
 mod ramp;
 
 use super::Storage;
+use super::storage::QuantiseError;
 use crate::cancel::{Cancel, Cancelled};
 use bc6h::TEXELS;
 pub(super) use ramp::{STEP, TOP};
@@ -16,6 +21,20 @@ use rayon::prelude::*;
 
 /// Side of a block.
 const SIDE: usize = 4;
+
+impl Storage {
+    /// Does this build write it? Blocks need the feature `blocks`, and are read without.
+    #[must_use]
+    pub const fn is_written(self) -> bool {
+        cfg!(feature = "blocks") || !self.is_block()
+    }
+
+    /// # Errors
+    /// [`QuantiseError::Feature`] if this build does not write it.
+    pub(super) fn check_written(self) -> Result<(), QuantiseError> {
+        if self.is_written() { Ok(()) } else { Err(QuantiseError::Feature { storage: self.id() }) }
+    }
+}
 
 /// A storage made of blocks.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,6 +111,13 @@ impl Kind {
         Ok(encoded?.concat())
     }
 
+    /// Nothing asks for it without the feature: [`Storage::is_written`].
+    #[cfg(not(feature = "blocks"))]
+    fn encode(self, _: &[[f64; 3]; TEXELS], _: usize) -> Vec<u8> {
+        vec![0; self.block_bytes()]
+    }
+
+    #[cfg(feature = "blocks")]
     fn encode(self, texels: &[[f64; 3]; TEXELS], n: usize) -> Vec<u8> {
         match self {
             Kind::Ramps(channels) => {
@@ -142,7 +168,7 @@ impl Kind {
     }
 
     /// A value as the only one of its block.
-    pub(super) fn alone(self, value: f64) -> f64 {
+    pub(super) fn uniform_block(self, value: f64) -> f64 {
         self.decode(&self.encode(&[[value; 3]; TEXELS], 1))[0][0]
     }
 }

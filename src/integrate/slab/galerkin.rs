@@ -48,7 +48,7 @@ pub(super) fn assemble(medium: &dyn Medium, panels: &Panels, modes: usize) -> Ke
             if b - a <= 1 {
                 pair.touching(&mut block)
             } else {
-                pair.apart(&mut block)
+                pair.far(&mut block)
             }
             for (m, part) in block.chunks_exact(n * n).enumerate() {
                 for i in 0..n {
@@ -72,7 +72,7 @@ pub(super) fn assemble(medium: &dyn Medium, panels: &Panels, modes: usize) -> Ke
 
 impl Pair<'_> {
     /// The product of the two rules.
-    fn apart(&self, block: &mut [f64]) {
+    fn far(&self, block: &mut [f64]) {
         let n = self.panels.order;
         let rule = gauss::rule(n);
         let (w, v) = (self.first[1] - self.first[0], self.second[1] - self.second[0]);

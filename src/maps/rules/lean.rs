@@ -11,7 +11,7 @@ pub static RULE: Rule = Rule {
     id: "lean",
     title: "variance of slopes along its axes",
     formula: "alpha_i'^2 = alpha^2 + 2 Var_i",
-    sources: &[(cite::OLANO_BAKER_2010, "Eq. 9 (number recalled)")],
+    sources: &[(cite::OLANO_BAKER_2010, "the covariance of the filtered map")],
     notes: "Exact for Beckmann lobes of Gaussian slopes; GGX has no variance.",
     anisotropic: true,
     method: Method::Formula(lobe),

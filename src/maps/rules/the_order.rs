@@ -10,7 +10,7 @@ pub static RULE: Rule = Rule {
     id: "the-order",
     title: "the rule of The Order: 1886",
     formula: "alpha'^2 = alpha^2 + 1/(2 kappa), kappa = (3 |N| - |N|^3)/(1 - |N|^2)",
-    sources: &[(cite::NEUBELT_PETTINEO_2013, "section on specular antialiasing (number recalled)")],
+    sources: &[(cite::NEUBELT_PETTINEO_2013, "the section on specular antialiasing")],
     notes: "Gives back less than half of the width of vmf; several engines have taken it over.",
     anisotropic: false,
     method: Method::Formula(lobe),

@@ -10,7 +10,7 @@ pub static RULE: Rule = Rule {
     id: "toksvig",
     title: "Toksvig's shortened normal",
     formula: "n = 2/alpha^2 - 2, n' = n |N|/(|N| + n (1 - |N|)), alpha'^2 = 2/(n' + 2)",
-    sources: &[(cite::TOKSVIG_2005, "Eq. 5 (number recalled)")],
+    sources: &[(cite::TOKSVIG_2005, "the shortened exponent")],
     notes: "The normals are made unit before they are averaged: a map of short normals is not a rough one.",
     anisotropic: false,
     method: Method::Formula(lobe),

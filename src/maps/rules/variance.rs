@@ -10,7 +10,7 @@ pub static RULE: Rule = Rule {
     id: "variance",
     title: "trace of the variance of slopes",
     formula: "alpha'^2 = alpha^2 + Var_x + Var_y",
-    sources: &[(cite::OLANO_BAKER_2010, "Eq. 9 (number recalled), isotropic")],
+    sources: &[(cite::OLANO_BAKER_2010, "the covariance of the filtered map, its trace")],
     notes: "The isotropic reading of LEAN.",
     anisotropic: false,
     method: Method::Formula(lobe),

@@ -19,7 +19,7 @@ pub struct Tabulated {
     planes: [Vec<f64>; 3],
 }
 
-/// Why a table is none.
+/// Why numbers are no tabulated BRDF.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum TableFault {
     /// Too many or too few values.

@@ -28,11 +28,11 @@ pub struct Pictured {
 
 /// The first of the worst texels.
 pub(super) fn pictured(surface: &Surface, levels: &[Level<'_>], worst: &[Place]) -> Vec<Pictured> {
-    worst.iter().take(TOLD).filter_map(|p| one(surface, levels, p)).collect()
+    worst.iter().take(TOLD).filter_map(|p| pictured_texel(surface, levels, p)).collect()
 }
 
 #[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]
-fn one(surface: &Surface, levels: &[Level<'_>], place: &Place) -> Option<Pictured> {
+fn pictured_texel(surface: &Surface, levels: &[Level<'_>], place: &Place) -> Option<Pictured> {
     let sizes = halved(surface.size[0], surface.size[1]);
     let cover = [0, 1].map(|axis| {
         let step = |k: usize| Coverage::new(sizes[k][axis], sizes[k + 1][axis]);

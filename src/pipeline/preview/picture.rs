@@ -2,7 +2,7 @@
 
 use super::Preview;
 use crate::encode::EncodeError;
-use crate::picture::Space;
+use crate::picture::{PictureError, Space, write_png};
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage,
 };
@@ -12,7 +12,7 @@ use std::io::Cursor;
 pub(super) const FULL: f64 = 0.05;
 
 /// Largest difference of the three colours.
-fn apart(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+fn largest_difference(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
@@ -20,7 +20,7 @@ fn apart(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 ///
 /// # Errors
 /// What the PNG encoder says.
-pub fn png(preview: &Preview) -> Result<Vec<u8>, image::ImageError> {
+pub fn png(preview: &Preview) -> Result<Vec<u8>, PictureError> {
     let width = preview.integrated.len() / preview.size.max(1);
     let mut bytes = Vec::with_capacity(9 * preview.integrated.len());
     let mut push = |known: bool, rgb: [u8; 3]| bytes.extend(if known { rgb } else { [118; 3] });
@@ -30,21 +30,10 @@ pub fn png(preview: &Preview) -> Result<Vec<u8>, image::ImageError> {
         }
     }
     for (a, b) in preview.integrated.iter().zip(&preview.read) {
-        let part = (apart(a, b) / FULL).min(1.0);
+        let part = (largest_difference(a, b) / FULL).min(1.0);
         push(!a[0].is_nan(), colorous::MAGMA.eval_continuous(part).as_array());
     }
-    let size = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-    let height = bytes.len() / (3 * width.max(1));
-    let mut out = Cursor::new(Vec::new());
-    let encoder = image::codecs::png::PngEncoder::new(&mut out);
-    image::ImageEncoder::write_image(
-        encoder,
-        &bytes,
-        size(width),
-        size(height),
-        image::ExtendedColorType::Rgb8,
-    )?;
-    Ok(out.into_inner())
+    write_png([width, bytes.len() / (3 * width.max(1))], 3, &bytes)
 }
 
 /// An EXR of 32-bit floats, linear: layers `integrated`, `read` and `difference`; 0 outside the spheres.

@@ -34,7 +34,7 @@ pub(super) fn check(stored: &Stored, p: &Provenance, asked: Asked<'_>, r: &mut R
     let points: Vec<[f64; MAX_AXES]> =
         (0..asked.samples.div_ceil(SHARE)).map(|_| [(); MAX_AXES].map(|()| seeds.unit())).collect();
     let read: Vec<Read> =
-        points.par_iter().filter_map(|x| at(stored, &x[..grid.axes().len()], asked)).collect();
+        points.par_iter().filter_map(|x| read_at(stored, &x[..grid.axes().len()], asked)).collect();
     let largest = |inside: bool| {
         read.iter().filter(|r| r.practical || !inside).max_by(|a, b| a.error.total_cmp(&b.error))
     };
@@ -68,7 +68,7 @@ pub(super) fn check(stored: &Stored, p: &Provenance, asked: Asked<'_>, r: &mut R
     r.note("reading", result, told);
 }
 
-fn at(stored: &Stored, x: &[f64], asked: Asked<'_>) -> Option<Read> {
+fn read_at(stored: &Stored, x: &[f64], asked: Asked<'_>) -> Option<Read> {
     asked.cancel.check().ok()?;
     let (grid, baker) = (&stored.bound.spec.grid, &stored.bound.baker);
     let point = grid.at_coordinates(x);

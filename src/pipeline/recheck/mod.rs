@@ -195,7 +195,7 @@ pub fn recheck(image: Image, asked: Asked<'_>) -> Vec<Recheck> {
     if named && !image.channels.iter().all(|c| c.name.contains('.')) {
         return vec![Recheck::unchecked("", "several tables in one picture, which does not tell them apart")];
     }
-    image.apart().into_iter().map(|image| table(&image, asked)).collect()
+    image.into_parts().into_iter().map(|image| table(&image, asked)).collect()
 }
 
 fn table(image: &Image, asked: Asked<'_>) -> Recheck {

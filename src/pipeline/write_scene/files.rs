@@ -127,16 +127,24 @@ pub(super) fn base(scene: &Path) -> &Path {
 /// The bytes of a URI; none if it is a file that is not there.
 pub(super) fn fetch(request: &Request, at: &str, uri: &str) -> Result<Option<Vec<u8>>, SceneWriteError> {
     let failed = |source| SceneWriteError::Uri { at: at.to_owned(), source };
-    let path = match check_uri(uri, request.limits.data_uri_bytes).map_err(failed)? {
+    match check_uri(uri, request.limits.data_uri_bytes).map_err(failed)? {
         Checked::Data { .. } => {
             let data = decode_data(uri);
-            return data.map(Some).map_err(|source| SceneWriteError::Data { at: at.to_owned(), source });
+            data.map(Some).map_err(|source| SceneWriteError::Data { at: at.to_owned(), source })
         }
-        Checked::Inside(names) | Checked::Above(names) => {
-            let folder = base(&request.scene);
-            resolve(folder, request.root.as_deref().unwrap_or(folder), &names).map_err(failed)?
-        }
-    };
+        Checked::Inside(names) | Checked::Above(names) => read(request, at, &names),
+    }
+}
+
+/// The bytes of the file with these path names; none if it is not there.
+pub(super) fn read(
+    request: &Request,
+    at: &str,
+    names: &[String],
+) -> Result<Option<Vec<u8>>, SceneWriteError> {
+    let failed = |source| SceneWriteError::Uri { at: at.to_owned(), source };
+    let folder = base(&request.scene);
+    let path = resolve(folder, request.root.as_deref().unwrap_or(folder), names).map_err(failed)?;
     if !path.is_file() {
         return Ok(None);
     }

@@ -184,6 +184,9 @@ impl Output {
             let what = format!("{} storage of maps", self.encoder.id());
             return Err(unknown_word(&what, storage, taken.iter().map(|s| s.id())));
         };
+        if !storage.is_written() {
+            return Err(Fault::without(&format!("storage `{}`", storage.id()), "blocks"));
+        }
         Ok(self.stored(found, *storage))
     }
 

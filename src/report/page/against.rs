@@ -25,7 +25,7 @@ pub(super) fn against(view: &View, other: &Against, name: &str) -> Markup {
             }
         }))
         @match (&view.texels, &other.table) {
-            (Ok(texels), Ok(table)) => (apart(view, texels, table)),
+            (Ok(texels), Ok(table)) => (differences(view, texels, table)),
             (Err(why), _) | (_, Err(why)) => p.note { "The texels cannot be compared: " (why) },
         }
     }
@@ -65,7 +65,7 @@ fn rows(view: &View, b: &Provenance) -> Vec<[String; 3]> {
 }
 
 /// The other table, read at the texels of this one.
-fn apart(view: &View, texels: &Texels, other: &Table) -> Markup {
+fn differences(view: &View, texels: &Texels, other: &Table) -> Markup {
     let quantities =
         |axes: &[crate::grid::Axis]| axes.iter().map(|a| a.quantity.base_id()).collect::<Vec<_>>();
     if quantities(texels.grid.axes()) != quantities(other.grid.axes()) {

@@ -14,6 +14,7 @@ pub use map::map;
 use super::drawing::Drawing;
 use crate::cancel::Cancelled;
 use crate::models::Brdf;
+use crate::picture::PictureError;
 use crate::tables::TexelError;
 
 /// How a value becomes a radius or a colour; the largest value reaches the rim.
@@ -104,7 +105,7 @@ impl Figure {
     ///
     /// # Errors
     /// What the PNG encoder says.
-    pub fn png(&self) -> Result<Vec<u8>, image::ImageError> {
+    pub fn png(&self) -> Result<Vec<u8>, PictureError> {
         self.0.png()
     }
 }

@@ -109,7 +109,7 @@ impl Draft {
     /// A draft in the container of its file.
     ///
     /// # Errors
-    /// [`EditError::Json`] for a text that is none.
+    /// [`EditError::Json`] for a text that is no JSON.
     pub fn new(parts: Parts) -> Result<Draft, DraftError> {
         let root = raw(&parts)?;
         let views = root.get("bufferViews").and_then(Raw::items).map_or(0, |v| v.len());

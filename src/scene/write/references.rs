@@ -44,7 +44,7 @@ impl Reference {
 /// `extras`, where nobody knows what they mean.
 ///
 /// # Errors
-/// [`EditError::Json`] for a text that is none.
+/// [`EditError::Json`] for a text that is no JSON.
 pub fn references(text: &str) -> Result<Vec<Reference>, EditError> {
     let mut found = Found { steps: Vec::new(), all: Vec::new() };
     let mut reader = serde_json::Deserializer::from_str(text);

@@ -63,7 +63,7 @@ impl Seen<'_> {
             } else {
                 quad::spread(y - turn)
             };
-            Sum::one(PI * slope * self.at(theta, PI * (turn + part)))
+            Sum::single(PI * slope * self.at(theta, PI * (turn + part)))
         })
     }
 

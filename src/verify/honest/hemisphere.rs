@@ -100,7 +100,7 @@ impl Wanted<'_> {
             let Some(t) = self.model.transmission() else { return Sum::ZERO };
             let Some(s) = t.sample(wo, u).filter(|s| s.pdf > 0.0) else { return Sum::ZERO };
             // the flux along wo: light from wo, seen from the drawn side
-            return Sum::one(t.eval(s.wi, wo) * s.wi.z.abs() / s.pdf);
+            return Sum::single(t.eval(s.wi, wo) * s.wi.z.abs() / s.pdf);
         }
         let Some(s) = self.model.sample(wo, u).filter(|s| s.pdf > 0.0) else { return Sum::ZERO };
         let value = if self.flux == Flux::Drawn { 1.0 } else { self.model.eval(wo, s.wi) * s.wi.z / s.pdf };
@@ -236,7 +236,7 @@ impl Wanted<'_> {
             return Sum::ZERO;
         }
         let jacobian = (v - eta * c) * (v - eta * c) / (eta * eta * c);
-        Sum::one(btdf.eval(wi, wo) * -wi.z * jacobian * sin)
+        Sum::single(btdf.eval(wi, wo) * -wi.z * jacobian * sin)
     }
 
     /// The least angle of half vectors at which the lobe is seen, over some azimuths: what the sums are graded at.

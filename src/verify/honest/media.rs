@@ -70,7 +70,7 @@ impl Phase {
         let mut breaks = vec![0.0];
         breaks.extend([1e-5, 1e-4, 1e-3, 1e-2, 0.1, 0.5].into_iter().filter(|b| *b < end));
         breaks.push(end);
-        quad::one(&breaks, TARGET, &mut |h| {
+        quad::integral(&breaks, TARGET, &mut |h| {
             let (near, far) = (h * h, (1.0 - h) * (1.0 + h));
             8.0 * PI * h * if forward { self.at(near, far) } else { self.at(far, near) }
         })

@@ -306,7 +306,7 @@ fn shares(side: Side, above: Truth, inside: Truth, asked: &Asked<'_>) -> Option<
         if eta < 1.0 {
             breaks.insert(1, ((1.0 - eta) * (1.0 + eta)).sqrt());
         }
-        quad::one(&breaks, 1e-12, &mut |mu| 2.0 * mu * (1.0 - fresnel::dielectric(mu, eta).mean().value))
+        quad::integral(&breaks, 1e-12, &mut |mu| 2.0 * mu * (1.0 - fresnel::dielectric(mu, eta).mean().value))
     };
     let (part, (through, error)) = match side {
         Side::Above => (x, passing(eta)),

@@ -66,7 +66,7 @@ impl Normals {
         }
         let from = mu / scale;
         // x = from + y / (1 - y)
-        let (value, error) = quad::one(&[0.0, 0.5, 1.0], TARGET, &mut |y| {
+        let (value, error) = quad::integral(&[0.0, 0.5, 1.0], TARGET, &mut |y| {
             let rest = 1.0 - y;
             let step = y / rest;
             let x = from + step;

@@ -89,7 +89,7 @@ impl Profiles {
         let mut breaks = vec![from];
         breaks.extend(scales.into_iter().filter(|s| *s > from && *s < end));
         breaks.push(end.max(from));
-        quad::one(&breaks, TARGET, f)
+        quad::integral(&breaks, TARGET, f)
     }
 
     /// The part inside a radius.
@@ -176,7 +176,7 @@ impl Profiles {
         }
         breaks.extend(self.profile.scales());
         breaks.sort_by(f64::total_cmp);
-        quad::one(&breaks, TARGET, &mut |y| {
+        quad::integral(&breaks, TARGET, &mut |y| {
             let r = libm::hypot(x, y);
             2.0 * self.times_radius(r, band) / r
         })
@@ -200,7 +200,7 @@ impl Profiles {
             breaks.push(x.sqrt());
         }
         breaks.sort_by(f64::total_cmp);
-        let (outside, outer) = quad::one(&breaks, TARGET, &mut |s| {
+        let (outside, outer) = quad::integral(&breaks, TARGET, &mut |s| {
             let r = x + s * s;
             2.0 * PI * self.times_radius(r, band) * libm::asin(x / r) / FRAC_PI_2 * 2.0 * s
         });
@@ -267,7 +267,7 @@ fn lit_circle(theta: f64, beta: f64, target: f64) -> (f64, f64) {
     } else {
         libm::acos(-along / across)
     };
-    quad::one(&[0.0, end], 0.02 * target, &mut |phi| (along + across * libm::cos(phi)).max(0.0) / PI)
+    quad::integral(&[0.0, end], 0.02 * target, &mut |phi| (along + across * libm::cos(phi)).max(0.0) / PI)
 }
 
 /// The dipole, `alpha' / (4 pi) sum z (sigma + 1 / d) exp(-sigma d) / d^2`.

@@ -20,7 +20,7 @@ impl Sum {
     pub(super) const ZERO: Sum = Sum { value: [0.0; WIDE], error: [0.0; WIDE] };
 
     /// One exact number.
-    pub(super) fn one(value: f64) -> Sum {
+    pub(super) fn single(value: f64) -> Sum {
         let mut sum = Sum::ZERO;
         sum.value[0] = value;
         sum
@@ -28,7 +28,7 @@ impl Sum {
 
     /// One number with its error.
     pub(super) fn known(value: f64, error: f64) -> Sum {
-        let mut sum = Sum::one(value);
+        let mut sum = Sum::single(value);
         sum.error[0] = error;
         sum
     }
@@ -333,8 +333,8 @@ fn panel(rule: &Rule, ends: [f64; 2], channels: usize, f: &mut dyn FnMut(f64) ->
 }
 
 /// A function of one channel: value and error.
-pub(super) fn one(breaks: &[f64], target: f64, f: &mut dyn FnMut(f64) -> f64) -> (f64, f64) {
-    let sum = integrate(breaks, 1, &[target; WIDE], 400, &mut |x| Sum::one(f(x)));
+pub(super) fn integral(breaks: &[f64], target: f64, f: &mut dyn FnMut(f64) -> f64) -> (f64, f64) {
+    let sum = integrate(breaks, 1, &[target; WIDE], 400, &mut |x| Sum::single(f(x)));
     (sum.value[0], sum.error[0])
 }
 

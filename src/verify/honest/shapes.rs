@@ -120,7 +120,7 @@ impl Shape {
         breaks.dedup();
         let area = if self == Shape::Fibres { width } else { 1.0 };
         let mut admitted = 0.0f64;
-        let (value, error) = quad::one(&breaks, TARGET, &mut |theta| {
+        let (value, error) = quad::integral(&breaks, TARGET, &mut |theta| {
             let (sin, cos) = libm::sincos(theta);
             let Some((d, relative)) = self.density(cos.max(0.0), width, gamma) else { return f64::NAN };
             admitted = admitted.max(relative);

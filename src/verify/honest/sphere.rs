@@ -30,7 +30,7 @@ fn form(z: f64, sin2: f64) -> Truth {
     if meet < half {
         breaks.insert(1, meet);
     }
-    let (value, error) = quad::one(&breaks, TARGET * sin2, &mut |t| {
+    let (value, error) = quad::integral(&breaks, TARGET * sin2, &mut |t| {
         let (sin, cos) = libm::sincos(t);
         let (a, b) = (z * cos, across * sin);
         let end = if a >= b {

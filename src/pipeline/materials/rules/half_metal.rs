@@ -1,4 +1,4 @@
-//! A surface is a metal or it is none.
+//! A surface is either a metal or not.
 
 use super::{Breaks, Rule};
 

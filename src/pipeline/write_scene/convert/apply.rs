@@ -1,6 +1,6 @@
 //! Metallic-roughness in place of specular-glossiness: the JSON of a material, and its pictures.
 
-use super::read::{Source, Texture};
+use super::read::{SpecGloss, Texture};
 use super::{Converted, Mode, NAME, diffuse_ratios};
 use crate::maps::spec_gloss::{Solved, solve};
 use crate::picture::{Picture, Plane, Space, write_png};
@@ -37,7 +37,7 @@ impl<'a> Writer<'a> {
     pub(super) fn exact(
         &mut self,
         draft: &mut Draft,
-        source: &Source<'_>,
+        source: &SpecGloss<'_>,
         name: Option<String>,
     ) -> Result<Converted, SceneWriteError> {
         let mut pbr = Patch::default();
@@ -92,7 +92,7 @@ impl<'a> Writer<'a> {
         &mut self,
         draft: &mut Draft,
         material: Raw<'_>,
-        source: &Source<'_>,
+        source: &SpecGloss<'_>,
         name: Option<String>,
     ) -> Result<Converted, SceneWriteError> {
         source.check_alike()?;
@@ -151,7 +151,7 @@ impl<'a> Writer<'a> {
     fn texture(
         &mut self,
         draft: &mut Draft,
-        source: &Source<'_>,
+        source: &SpecGloss<'_>,
         what: &str,
         png: &[u8],
         like: &Texture<'_>,
@@ -253,7 +253,7 @@ fn judged(texels: &[Texel], solved: &[Solved], size: [usize; 2]) -> Converted {
 /// Size, texels, and the codes of opacity if the diffuse texture has any.
 type Texels = ([usize; 2], Vec<Texel>, Option<Vec<u8>>);
 
-fn texels(source: &Source<'_>) -> Result<Texels, SceneWriteError> {
+fn texels(source: &SpecGloss<'_>) -> Result<Texels, SceneWriteError> {
     let sizes = [&source.diffuse_texture, &source.specular_texture]
         .map(|t| t.as_ref().map_or([1, 1], |t| size(&t.picture)));
     let size = [sizes[0][0].max(sizes[1][0]), sizes[0][1].max(sizes[1][1])];

@@ -180,7 +180,7 @@ pub(super) fn convert(
         root.get("materials").and_then(Raw::items).unwrap_or_default().into_iter().enumerate()
     {
         let Some(own) = material.find(&["extensions", NAME]) else { continue };
-        let source = read::Source::of(own, index, &images)?;
+        let source = read::SpecGloss::of(own, index, &images)?;
         let name = material.get("name").and_then(|n| n.value().as_str().map(str::to_owned));
         out.push(match mode {
             Mode::Exact => writer.exact(draft, &source, name)?,

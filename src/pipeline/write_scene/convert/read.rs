@@ -4,14 +4,14 @@ use super::ConvertError;
 use crate::picture::{self, Picture, Wrap};
 use crate::pipeline::write_scene::{Request, SceneWriteError, files};
 use crate::scene::write::Raw;
+use crate::scene::{Source, image_source};
+use serde_json::Value;
 
 /// The textures of a scene.
 pub(super) struct Images<'a> {
     textures: Vec<Raw<'a>>,
-    images: Vec<Raw<'a>>,
     samplers: Vec<Raw<'a>>,
-    views: Vec<Raw<'a>>,
-    buffers: Vec<Raw<'a>>,
+    tree: Value,
     bin: Option<&'a [u8]>,
     request: &'a Request,
 }
@@ -26,7 +26,7 @@ pub(super) struct Texture<'a> {
 }
 
 /// A specular-glossiness material.
-pub(super) struct Source<'a> {
+pub(super) struct SpecGloss<'a> {
     pub(super) material: usize,
     pub(super) own: Raw<'a>,
     pub(super) diffuse: [f64; 4],
@@ -36,19 +36,19 @@ pub(super) struct Source<'a> {
     pub(super) specular_texture: Option<Texture<'a>>,
 }
 
-impl<'a> Source<'a> {
+impl<'a> SpecGloss<'a> {
     pub(super) fn of(
         own: Raw<'a>,
         material: usize,
         images: &Images<'a>,
-    ) -> Result<Source<'a>, SceneWriteError> {
+    ) -> Result<SpecGloss<'a>, SceneWriteError> {
         let at = |key: &str| format!("materials[{material}].extensions.{}.{key}", super::NAME);
         let texture = |key: &str| own.get(key).map(|info| images.texture(info, &at(key))).transpose();
         let gloss = match own.get("glossinessFactor") {
             None => 1.0,
             Some(raw) => number(raw, &at("glossinessFactor"))?,
         };
-        Ok(Source {
+        Ok(SpecGloss {
             material,
             own,
             diffuse: numbers(own.get("diffuseFactor"), &at("diffuseFactor"))?,
@@ -105,21 +105,13 @@ fn numbers<const N: usize>(raw: Option<Raw<'_>>, at: &str) -> Result<[f64; N], C
 impl<'a> Images<'a> {
     pub(super) fn new(root: Raw<'a>, bin: Option<&'a [u8]>, request: &'a Request) -> Images<'a> {
         let list = |key: &str| root.get(key).and_then(Raw::items).unwrap_or_default();
-        Images {
-            textures: list("textures"),
-            images: list("images"),
-            samplers: list("samplers"),
-            views: list("bufferViews"),
-            buffers: list("buffers"),
-            bin,
-            request,
-        }
+        Images { textures: list("textures"), samplers: list("samplers"), tree: root.value(), bin, request }
     }
 
     fn texture(&self, info: Raw<'a>, at: &str) -> Result<Texture<'a>, SceneWriteError> {
         let wrong = |why: &str| ConvertError::Image { at: at.to_owned(), why: why.to_owned() };
-        let texture =
-            self.element(&self.textures, info, "index").ok_or_else(|| wrong("it names no texture"))?;
+        let texture = index(info, "index").and_then(|i| self.textures.get(i).copied());
+        let texture = texture.ok_or_else(|| wrong("it names no texture"))?;
         let image = index(texture, "source").ok_or_else(|| {
             wrong("its texture has no core image (PNG or JPEG), and others are not decoded here")
         })?;
@@ -136,50 +128,25 @@ impl<'a> Images<'a> {
         Ok(Texture { info, picture, sampler, wrap: [mode("wrapS"), mode("wrapT")] })
     }
 
-    fn element(&self, list: &[Raw<'a>], raw: Raw<'_>, key: &str) -> Option<Raw<'a>> {
-        list.get(index(raw, key)?).copied()
-    }
-
     fn picture(&self, image: usize) -> Result<Picture, SceneWriteError> {
         let at = format!("images[{image}]");
         let wrong = |why: String| SceneWriteError::from(ConvertError::Image { at: at.clone(), why });
-        let raw = self.images.get(image).ok_or_else(|| wrong("it is not there".to_owned()))?;
-        let bytes = match raw.get("uri").map(Raw::value) {
-            Some(uri) => self.fetch(&at, uri.as_str().unwrap_or_default())?,
-            None => self.view(*raw, &at)?,
+        let found = image_source(&self.tree, image, self.bin, &self.request.limits);
+        let bytes = match found.map_err(|fault| wrong(fault.to_string()))? {
+            Source::Missing(why) => return Err(wrong(why)),
+            Source::Embedded(bytes) => bytes,
+            Source::File { names, part } => {
+                let file = files::read(self.request, &at, &names)?;
+                let file = file.ok_or_else(|| wrong("its file is not there".to_owned()))?;
+                let [from, length] = part.unwrap_or([0, file.len() as u64]);
+                let from = usize::try_from(from).unwrap_or(usize::MAX);
+                let end = from.saturating_add(usize::try_from(length).unwrap_or(usize::MAX));
+                let beyond =
+                    || wrong(format!("its buffer view ends beyond the {} bytes of its file", file.len()));
+                file.get(from..end).map(<[u8]>::to_vec).ok_or_else(beyond)?
+            }
         };
         picture::read_bytes(&bytes).map_err(|e| wrong(e.to_string()))
-    }
-
-    fn fetch(&self, at: &str, uri: &str) -> Result<Vec<u8>, SceneWriteError> {
-        files::fetch(self.request, at, uri)?.ok_or_else(|| {
-            ConvertError::Image { at: at.to_owned(), why: "its file is not there".to_owned() }.into()
-        })
-    }
-
-    /// The bytes of an image in a buffer view.
-    fn view(&self, image: Raw<'_>, at: &str) -> Result<Vec<u8>, SceneWriteError> {
-        let wrong = || {
-            SceneWriteError::from(ConvertError::Image {
-                at: at.to_owned(),
-                why: "its buffer view holds no image".to_owned(),
-            })
-        };
-        let view = self.element(&self.views, image, "bufferView").ok_or_else(wrong)?;
-        let buffer = index(view, "buffer").ok_or_else(wrong)?;
-        let raw = self.buffers.get(buffer).ok_or_else(wrong)?;
-        let fetched;
-        let bytes = match (raw.get("uri").map(Raw::value), buffer, self.bin) {
-            (Some(uri), ..) => {
-                fetched = self.fetch(&format!("buffers[{buffer}]"), uri.as_str().unwrap_or_default())?;
-                fetched.as_slice()
-            }
-            (None, 0, Some(bin)) => bin,
-            _ => return Err(wrong()),
-        };
-        let start = index(view, "byteOffset").unwrap_or(0);
-        let end = index(view, "byteLength").map_or(0, |n| start.saturating_add(n));
-        bytes.get(start..end).map(<[u8]>::to_vec).ok_or_else(wrong)
     }
 }
 
