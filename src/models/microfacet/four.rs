@@ -1,6 +1,6 @@
 //! Smith GGX at four views at a time: the half-vector chart and the model in one kernel with one division and one square root a node.
 //!
-//! The nodes, panels and levels are those of [`half_vector`], so that the values differ from those of the chart by rounding alone where
+//! The nodes, panels and levels are those of [`half_vector`](crate::integrate::half_vector), so that the values differ from those of the chart by rounding alone where
 //! four views share their scales. What follows is [`Walter2007](crate::cite::WALTER_2007) Eq. 20 and 33 in half-angle tangents with
 //! everything that cancels left out. Below the middle of a row, with `t = tan(theta_m / 2)`:
 //!
