@@ -25,14 +25,16 @@ impl Lanes {
     #[inline(always)]
     #[must_use]
     pub fn map(self, f: impl Fn(f64) -> f64) -> Lanes {
-        Lanes(self.0.map(f))
+        let [a, b, c, d] = self.0;
+        Lanes([f(a), f(b), f(c), f(d)])
     }
 
     /// Square roots.
     #[inline(always)]
     #[must_use]
     pub fn sqrt(self) -> Lanes {
-        self.map(f64::sqrt)
+        let [a, b, c, d] = self.0;
+        Lanes([a.sqrt(), b.sqrt(), c.sqrt(), d.sqrt()])
     }
 
     /// The smallest of them.
@@ -58,14 +60,16 @@ macro_rules! operator {
             type Output = Lanes;
             #[inline(always)]
             fn $function(self, other: f64) -> Lanes {
-                self.map(|x| x $sign other)
+                let [a, b, c, d] = self.0;
+                Lanes([a $sign other, b $sign other, c $sign other, d $sign other])
             }
         }
         impl $trait<Lanes> for f64 {
             type Output = Lanes;
             #[inline(always)]
             fn $function(self, other: Lanes) -> Lanes {
-                other.map(|x| self $sign x)
+                let [a, b, c, d] = other.0;
+                Lanes([self $sign a, self $sign b, self $sign c, self $sign d])
             }
         }
     };
