@@ -84,7 +84,7 @@ pub const NORMALS: &[Normals] = &[
         gamma: Some([1.500_001, 1e8]),
         masking: Some((cite::RIBARDIERE_2017, "Eq. 13 to 15 (Lambda)")),
         hidden: Some(|s, w| StudentT::isotropic(s.width, s.gamma).mu_lambda(w)),
-        ..slopes("student-t", cite::RIBARDIERE_2017, "Eq. 4 (number recalled)")
+        ..slopes("student-t", cite::RIBARDIERE_2017, "Eq. 18, by appleseed")
     },
     Normals {
         id: "gtr",

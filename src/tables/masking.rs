@@ -40,7 +40,7 @@ pub(super) const DISTRIBUTION: Param = Param::choice(
 
 /// The sources of Smith's masking, then of the others.
 pub(super) const SOURCES: [Source; NORMALS.len() + 4] = {
-    let schlick = Source::new(cite::SCHLICK_1994, "Eq. 19 (number recalled)").when("distribution", SCHLICK);
+    let schlick = Source::new(cite::SCHLICK_1994, "the rational form of G1").when("distribution", SCHLICK);
     let mut all = [schlick; NORMALS.len() + 4];
     let mut i = 0;
     while i < NORMALS.len() {
