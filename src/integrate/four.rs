@@ -53,24 +53,21 @@ pub fn climb(
     for j in levels {
         let (fine, more) = at(j);
         evaluations = evaluations.saturating_add(more);
-        let mut done = j > first + 1;
-        for (lane, result) in results.iter_mut().enumerate() {
-            if j == first {
-                break;
-            }
-            let (difference, magnitude) = apart(&fine, &coarse, channels, lane);
-            if j > first + 1 {
-                for c in 0..channels.len() {
-                    let error = trust.error(j, before[lane][c], difference[c]) + magnitude[c] * ROUNDING;
-                    result.error[c] = error;
-                    // NaN compares false and so never counts as done
-                    done &= error <= tolerance;
+        if j > first {
+            for (lane, (result, before)) in results.iter_mut().zip(&mut before).enumerate() {
+                let (difference, magnitude) = apart(&fine, &coarse, channels, lane);
+                if j > first + 1 {
+                    for c in 0..channels.len() {
+                        result.error[c] = trust.error(j, before[c], difference[c]) + magnitude[c] * ROUNDING;
+                    }
                 }
+                *before = difference;
             }
-            before[lane] = difference;
         }
         coarse = fine;
-        if done {
+        // NaN compares false and so never counts as done
+        let done = |result: &Estimate| result.error[..channels.len()].iter().all(|e| *e <= tolerance);
+        if results.iter().all(done) {
             break;
         }
     }

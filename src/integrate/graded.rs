@@ -109,7 +109,7 @@ pub fn shared(eps: f64, order: Order, level: f64) -> &'static Shared {
     let eighth = eighth(eps);
     let of_scale = RULES[(eighth - EIGHTHS[0]).unsigned_abs() as usize].get_or_init(|| OfScale::new(eighth));
     let count = order.at(level, of_scale.stretch).min(SHARED_ORDERS);
-    of_scale.rules[count - 1].get_or_init(|| Shared::new(of_scale.eps, count))
+    of_scale.rules[count - 1].get_or_init(|| Box::new(Shared::new(of_scale.eps, count)))
 }
 
 /// The rules of one scale, by order.
@@ -117,7 +117,7 @@ struct OfScale {
     eps: f64,
     /// `asinh(1 / eps)`.
     stretch: f64,
-    rules: Box<[OnceLock<Shared>]>,
+    rules: Box<[OnceLock<Box<Shared>>]>,
 }
 
 impl OfScale {

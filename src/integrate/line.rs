@@ -13,7 +13,7 @@ use super::stop::{Estimate, MAX_CHANNELS, ROUNDING, Sums};
 pub const MAX_PANELS: usize = 1000;
 
 /// Nodes in (0, 1), the last in the middle; mirrored at 0.
-const NODES: [f64; 8] = [
+pub const NODES: [f64; 8] = [
     0.991_455_371_120_812_639_206_854_697_526_329,
     0.949_107_912_342_758_524_526_189_684_047_851,
     0.864_864_423_359_769_072_789_712_788_640_926,
@@ -25,7 +25,7 @@ const NODES: [f64; 8] = [
 ];
 
 /// Kronrod weights of the nodes.
-const KRONROD: [f64; 8] = [
+pub const KRONROD: [f64; 8] = [
     0.022_935_322_010_529_224_963_732_008_058_970,
     0.063_092_092_629_978_553_290_700_663_189_204,
     0.104_790_010_322_250_183_839_876_322_541_518,
@@ -37,7 +37,7 @@ const KRONROD: [f64; 8] = [
 ];
 
 /// Gauss weights of every second node.
-const GAUSS: [f64; 4] = [
+pub const GAUSS: [f64; 4] = [
     0.129_484_966_168_869_693_270_611_432_679_082,
     0.279_705_391_489_276_667_901_467_771_423_780,
     0.381_830_050_505_118_944_950_369_775_488_975,

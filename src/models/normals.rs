@@ -5,7 +5,7 @@
 
 use super::ParamError;
 use crate::cite::{self, Cite};
-use crate::integrate::{Estimate, MAX_CHANNELS, line};
+use crate::integrate::{Estimate, MAX_CHANNELS, View, line};
 use crate::terms::beckmann::Beckmann;
 use crate::terms::ggx::Ggx;
 use crate::terms::smith::Ndf as _;
@@ -158,7 +158,7 @@ pub fn find(id: &str) -> Option<&'static Normals> {
 /// A direction of a cosine, in the plane of the tangent.
 #[must_use]
 pub fn direction(mu: f64) -> DVec3 {
-    DVec3::new(((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt(), 0.0, mu)
+    View::from(mu).direction()
 }
 
 impl Normals {
@@ -289,10 +289,5 @@ impl Pair {
 /// The cosine between a direction and a facet normal of these cosines, `phi` between their azimuths.
 #[must_use]
 pub fn between(mu: f64, mu_m: f64, phi: f64) -> f64 {
-    let (sin, cos) = libm::sincos(phi);
-    let turned = |mu: f64, c: f64, s: f64| {
-        let flat = direction(mu);
-        DVec3::new(flat.x * c, flat.x * s, flat.z)
-    };
-    turned(mu, 1.0, 0.0).dot(turned(mu_m, cos, sin))
+    direction(mu).dot(View { mu: mu_m, phi }.direction())
 }

@@ -1,7 +1,7 @@
 //! Texels fitted to the reader: the truth at a fine grid of points, and the values that read closest to it.
 
 use super::PipelineError;
-use crate::cancel::{Cancel, Steps, Tell};
+use crate::cancel::{Cancel, Tell};
 use crate::grid::fit::{Objective, Samples, places, places_count};
 use crate::grid::layout::Point;
 use crate::grid::{Grid, Table};
@@ -24,6 +24,8 @@ const LIMIT: usize = (2 * 1024 + 5) * (2 * 1024 + 5);
 pub(super) struct Fitted {
     samples: Samples,
     truth: Vec<(Point, Sums)>,
+    /// Is a point of the truth in the practical domain?
+    practical: Vec<bool>,
     least_squares: Vec<f64>,
     minimax: Vec<f64>,
 }
@@ -36,8 +38,13 @@ pub(super) type Blend = [u8; 3];
 /// The whole of a blend.
 pub(super) const WHOLE: u8 = 8;
 
+/// All of one.
+pub(super) fn pure(objective: Objective) -> Blend {
+    Objective::ALL.map(|o| if o == objective { WHOLE } else { 0 })
+}
+
 /// Weights of a blend.
-fn weights(blend: Blend) -> [f64; 3] {
+pub(super) fn weights(blend: Blend) -> [f64; 3] {
     blend.map(|part| f64::from(part) / f64::from(WHOLE))
 }
 
@@ -49,6 +56,20 @@ pub(super) struct Figures {
     pub(super) at: usize,
     /// By area in axis coordinates.
     pub(super) mean: f64,
+}
+
+impl Figures {
+    fn see(&mut self, at: usize, area: f64, error: f64) {
+        self.mean += area * error;
+        if error > self.largest {
+            (self.largest, self.at) = (error, at);
+        }
+    }
+}
+
+/// Sums over areas become means.
+fn over(figures: &mut [Figures; 2], areas: [f64; 2]) {
+    figures.iter_mut().zip(areas).filter(|(_, area)| *area > 0.0).for_each(|(f, area)| f.mean /= area);
 }
 
 impl Fitted {
@@ -84,34 +105,26 @@ impl Fitted {
     /// How blends of a channel read at these points before they are stored, where the shader takes the channel as it is.
     pub(super) fn figures_of_blends(
         &self,
-        grid: &Grid,
         (channel, channels): (usize, usize),
         exact: &[f64],
         blends: &[Blend],
     ) -> Vec<[Figures; 2]> {
-        let errors = [0, 1, 2].map(|o| {
-            let mut pure = [0; 3];
-            pure[o] = WHOLE;
-            let mut read = self.samples.read(&self.blended(pure, channel, channels, exact));
+        let errors = Objective::ALL.map(|o| {
+            let mut read = self.samples.read(&self.blended(pure(o), channel, channels, exact));
             read.iter_mut().zip(&self.truth).for_each(|(r, t)| *r -= t.1[channel]);
             read
         });
-        let practical: Vec<bool> = self.truth.iter().map(|(p, _)| in_practical_domain(grid, p)).collect();
         let of = |blend: &Blend| {
             let blend = weights(*blend);
             let (mut figures, mut areas) = ([Figures::default(); 2], [0.0; 2]);
             for (i, area) in self.samples.areas().iter().enumerate() {
                 let error = errors.iter().zip(blend).map(|(e, part)| part * e[i]).sum::<f64>().abs();
-                for part in 0..=usize::from(practical[i]) {
+                for part in 0..=usize::from(self.practical[i]) {
                     areas[part] += area;
-                    let f = &mut figures[part];
-                    f.mean += area * error;
-                    if error > f.largest {
-                        (f.largest, f.at) = (error, i);
-                    }
+                    figures[part].see(i, *area, error);
                 }
             }
-            figures.iter_mut().zip(areas).filter(|(_, a)| *a > 0.0).for_each(|(f, a)| f.mean /= a);
+            over(&mut figures, areas);
             figures
         };
         blends.par_iter().map(of).collect()
@@ -119,7 +132,6 @@ impl Fitted {
 
     /// How stored values read at these points: for each channel as measured, over the whole and the practical domain.
     pub(super) fn figures(&self, bound: &Bound, stored: &[f64]) -> Vec<[Figures; 2]> {
-        let grid = &bound.spec.grid;
         let n = bound.spec.layout.channels.len();
         let reads: Vec<Vec<f64>> = (0..n)
             .map(|c| self.samples.read(&stored.iter().skip(c).step_by(n).copied().collect::<Vec<f64>>()))
@@ -132,21 +144,14 @@ impl Fitted {
             read.iter_mut().zip(&reads).for_each(|(r, channel)| *r = channel[i]);
             bound.baker.decode(point.values(), &mut read);
             bound.baker.decode(point.values(), &mut value);
-            let parts = [true, in_practical_domain(grid, point)];
-            for part in (0..2).filter(|p| parts[*p]) {
+            for part in 0..=usize::from(self.practical[i]) {
                 areas[part] += area;
                 for (c, f) in figures.iter_mut().enumerate() {
-                    let (f, error) = (&mut f[part], (read[c] - value[c]).abs());
-                    f.mean += area * error;
-                    if error > f.largest {
-                        (f.largest, f.at) = (error, i);
-                    }
+                    f[part].see(i, *area, (read[c] - value[c]).abs());
                 }
             }
         }
-        for f in &mut figures {
-            f.iter_mut().zip(areas).filter(|(_, area)| *area > 0.0).for_each(|(f, area)| f.mean /= area);
-        }
+        figures.iter_mut().for_each(|f| over(f, areas));
         figures
     }
 }
@@ -176,10 +181,8 @@ pub(super) fn fit(
         limit: LIMIT,
     })?;
     let places = places(grid, per_cell);
-    let steps = Steps::new(places.len(), tell);
     let points: Vec<Point> = places.iter().map(|(x, _)| grid.at_coordinates(x)).collect();
-    let done = |count: usize| (0..count).for_each(|_| steps.step());
-    let values = at_points(bound, &points, tolerance, cancel, &done);
+    let values = at_points(bound, &points, tolerance, cancel, tell);
     let truth: Vec<(Point, f64, Sums)> = points
         .into_iter()
         .zip(&places)
@@ -202,8 +205,9 @@ pub(super) fn fit(
         (0..grid.len()).flat_map(|t| channels.iter().map(move |values| values[t])).collect()
     };
     let (least_squares, minimax) = (interleave(&least_squares), interleave(&minimax));
+    let practical = truth.iter().map(|(point, ..)| in_practical_domain(grid, point)).collect();
     let truth = truth.into_iter().map(|(point, _, value)| (point, value)).collect();
-    Ok(Fitted { samples, truth, least_squares, minimax })
+    Ok(Fitted { samples, truth, practical, least_squares, minimax })
 }
 
 /// Values to start from, and the range that fitted ones keep: that of the channel, whose ends stand for values beyond them by no

@@ -1,7 +1,7 @@
 //! What the texels of a file hold: the integrals, or values fitted to the reader; and which of them, where the recipe leaves
 //! that open.
 
-use super::fit::{Blend, Figures, Fitted, WHOLE};
+use super::fit::{Blend, Figures, Fitted, WHOLE, pure, weights};
 use crate::cancel::Cancel;
 use crate::encode::{self, Quantised, Storage, Unstored};
 use crate::grid::Table;
@@ -157,17 +157,15 @@ impl Source<'_> {
             loop {
                 let held: Vec<Blend> = ranked.iter().zip(&at).map(|(blends, i)| blends[*i]).collect();
                 let mixed = self.candidate(fitted, &held, storage)?;
-                // rounding may have spoilt what was gained: the next one then; exact values are never spoilt
-                let exact = pure(Objective::Exact);
-                let spoilt = (0..n).filter(|c| {
-                    held[*c] != exact && gain(&all[0].figures[*c], &mixed.figures[*c], LUCK).is_none()
-                });
-                let spoilt: Vec<usize> = spoilt.collect();
+                let worse = |c: &usize| gain(&all[0].figures[*c], &mixed.figures[*c], LUCK).is_none();
+                let worse: Vec<usize> = (0..n).filter(worse).collect();
+                if worse.is_empty() {
+                    return Ok(held);
+                }
+                // rounding may have spoilt what was gained: the next blend then; exact values have none
+                let blended = |c: &usize| held[*c] != pure(Objective::Exact);
+                let spoilt: Vec<usize> = worse.into_iter().filter(blended).collect();
                 if spoilt.is_empty() {
-                    let whole = (0..n).all(|c| gain(&all[0].figures[c], &mixed.figures[c], LUCK).is_some());
-                    if whole {
-                        return Ok(held);
-                    }
                     break;
                 }
                 spoilt.into_iter().for_each(|c| at[c] = (at[c] + SKIPPED).min(ranked[c].len() - 1));
@@ -180,8 +178,8 @@ impl Source<'_> {
     /// The blends of a channel that are worse than the exact values by no measure, the best one first and the exact values last.
     fn ranked(&self, fitted: &Fitted, channel: usize) -> Vec<Blend> {
         let blends: Vec<Blend> = blends();
-        let (grid, n) = (&self.bound.spec.grid, self.table.channels.len());
-        let figures = fitted.figures_of_blends(grid, (channel, n), &self.table.values, &blends);
+        let n = self.table.channels.len();
+        let figures = fitted.figures_of_blends((channel, n), &self.table.values, &blends);
         let gains = figures.iter().map(|f| gain(&figures[0], f, 0.0));
         let mut better: Vec<(f64, Blend)> =
             gains.zip(&blends).filter_map(|(gain, blend)| Some((gain?, *blend))).collect();
@@ -198,11 +196,6 @@ const SKIPPED: usize = 3;
 const BLENDED: &str =
     "texels of fitted channels are not samples: together they read, interpolated, closest to the truth";
 
-/// All of one.
-fn pure(objective: Objective) -> Blend {
-    Objective::ALL.map(|o| if o == objective { WHOLE } else { 0 })
-}
-
 /// The blends that are tried, the exact values first.
 fn blends() -> Vec<Blend> {
     let of = |i: u8| (0..=i).map(move |j| [WHOLE - i, i - j, j]);
@@ -211,20 +204,11 @@ fn blends() -> Vec<Blend> {
 
 /// `least-squares`, or `0.25 exact + 0.75 minimax`.
 fn named_blend(blend: Blend) -> String {
-    let parts: Vec<(Objective, f64)> = Objective::ALL
-        .into_iter()
-        .zip(blend)
-        .filter(|(_, part)| *part > 0)
-        .map(|(o, part)| (o, f64::from(part) / f64::from(WHOLE)))
-        .collect();
-    match &parts[..] {
-        [(one, _)] => one.id().to_owned(),
-        _ => parts
-            .iter()
-            .map(|(o, part)| format!("{} {}", exact(part), o.id()))
-            .collect::<Vec<_>>()
-            .join(" + "),
-    }
+    let parts = Objective::ALL.into_iter().zip(weights(blend)).filter(|(_, part)| *part > 0.0);
+    let one = |(o, part): (Objective, f64)| {
+        if blend == pure(o) { o.id().to_owned() } else { format!("{} {}", exact(part), o.id()) }
+    };
+    parts.map(one).collect::<Vec<_>>().join(" + ")
 }
 
 /// The objective that gains most on channels of which it is worse by no measure; exact if none gains enough.

@@ -142,8 +142,7 @@ fn in_view(root: &Node<'_>, view: &Node<'_>, bin: Option<&[u8]>, limits: &Limits
     let Some(views) = root.get("bufferViews")? else { return missing("buffer views") };
     let index = view.index("bufferViews", views.len()?)?;
     let Some(view) = views.items()?.nth(index) else { return missing("buffer views") };
-    let number = |key: &'static str| view.get(key)?.map_or(Ok(0), |n| n.whole());
-    let part = Some([number("byteOffset")?, number("byteLength")?]);
+    let part = Some([view.whole_or_zero("byteOffset")?, view.whole_or_zero("byteLength")?]);
     let Some(buffers) = root.get("buffers")? else { return missing("buffers") };
     let index = view.need("buffer", "the index of a buffer")?.index("buffers", buffers.len()?)?;
     let Some(buffer) = buffers.items()?.nth(index) else { return missing("buffers") };

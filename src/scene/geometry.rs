@@ -306,14 +306,13 @@ fn accessor(root: &Node<'_>, index: &Node<'_>, indices: bool) -> Result<Accessor
         return Err(Fault::Type { at: kind.path(), got, expected });
     }
     let component = node.need("componentType", "a component type")?;
-    let whole = |key| node.get(key)?.map_or(Ok(0), |n: Node<'_>| n.whole());
     Ok(Accessor {
         count: node.need("count", "the number of elements")?.whole()?,
         numbers: if indices { 1 } else { 2 },
         component: Component::read(&component, indices)?,
         normalized: node.get("normalized")?.map_or(Ok(false), |flag| flag.flag())?,
         view: node.get("bufferView")?.map(|v| view(root, &v)).transpose()?,
-        offset: whole("byteOffset")?,
+        offset: node.whole_or_zero("byteOffset")?,
         sparse: node.get("sparse")?.map(|s| sparse(root, &s)).transpose()?,
     })
 }
@@ -322,7 +321,7 @@ fn sparse(root: &Node<'_>, node: &Node<'_>) -> Result<Sparse, Fault> {
     let part = |key: &'static str| -> Result<(View, u64), Fault> {
         let part = node.need(key, "bytes of a sparse accessor")?;
         let bytes = view(root, &part.need("bufferView", "the index of a buffer view")?)?;
-        Ok((bytes, part.get("byteOffset")?.map_or(Ok(0), |n| n.whole())?))
+        Ok((bytes, part.whole_or_zero("byteOffset")?))
     };
     let indices = node.need("indices", "bytes of a sparse accessor")?;
     let component = Component::read(&indices.need("componentType", "a component type")?, true)?;
@@ -349,7 +348,7 @@ fn view(root: &Node<'_>, index: &Node<'_>) -> Result<View, Fault> {
     }
     Ok(View {
         buffer: node.need("buffer", "the index of a buffer")?.index("buffers", buffers)?,
-        offset: node.get("byteOffset")?.map_or(Ok(0), |n| n.whole())?,
+        offset: node.whole_or_zero("byteOffset")?,
         length: node.need("byteLength", "the number of bytes")?.whole()?,
         stride: node.get("byteStride")?.map(|n| n.whole()).transpose()?,
         compressed,

@@ -176,6 +176,11 @@ impl<'a> Node<'a> {
         self.value.as_u64().ok_or_else(|| self.wrong("an integer of at least 0"))
     }
 
+    /// A whole number that is 0 where it is left out.
+    pub(super) fn whole_or_zero(&'a self, key: &'a str) -> Result<u64, Fault> {
+        self.get(key)?.map_or(Ok(0), |n| n.whole())
+    }
+
     /// This value as a flag.
     pub(super) fn flag(&self) -> Result<bool, Fault> {
         self.value.as_bool().ok_or_else(|| self.wrong("true or false"))

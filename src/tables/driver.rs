@@ -5,7 +5,7 @@
 //! the number of threads.
 
 use super::{Bound, TexelError};
-use crate::cancel::{Cancel, Cancelled};
+use crate::cancel::{Cancel, Cancelled, Steps, Tell};
 use crate::grid::Table;
 use crate::grid::layout::Point;
 use crate::integrate::{Estimate, Sums};
@@ -151,8 +151,7 @@ fn bake_row(bound: &Bound, first: usize, row: Row<'_>, options: Options<'_>) -> 
     let group = bound.baker.group();
     for (part, start) in texels.chunks(group).zip((first..).step_by(group)) {
         options.cancel.check()?;
-        let at: Vec<&[f64]> = part.iter().map(|texel| texel.values()).collect();
-        let results = bound.baker.texels(&at, options.tolerance);
+        let results = made(bound, part, options.tolerance);
         for (result, texel) in results.into_iter().zip(start..) {
             let e = result.map_err(|error| BakeError::Texel {
                 texel,
@@ -177,30 +176,34 @@ pub fn bake_again(bound: &Bound, texel: usize, tolerance: f64) -> Result<Estimat
     let (grid, group) = (&bound.spec.grid, bound.baker.group());
     let first = texel - texel % group;
     let points: Vec<Point> = (first..grid.len().min(first + group)).map(|t| grid.texel(t)).collect();
-    let at: Vec<&[f64]> = points.iter().map(Point::values).collect();
-    let mut made = bound.baker.texels(&at, tolerance);
-    made.swap_remove(texel - first)
+    made(bound, &points, tolerance).swap_remove(texel - first)
 }
 
 /// The values at points that are no texels, in groups as texels are, without their estimates: none where an integral fails, and after a
 /// stop.
-pub fn at_points(
+pub(crate) fn at_points(
     bound: &Bound,
     points: &[Point],
     tolerance: f64,
     cancel: &Cancel,
-    done: &(dyn Fn(usize) + Sync),
+    tell: &Tell<'_>,
 ) -> Vec<Option<Sums>> {
+    let steps = Steps::new(points.len(), tell);
     let group = |part: &[Point]| {
         if cancel.is_set() {
             return vec![None; part.len()];
         }
-        let at: Vec<&[f64]> = part.iter().map(Point::values).collect();
-        let results = bound.baker.texels(&at, tolerance);
-        done(part.len());
+        let results = made(bound, part, tolerance);
+        part.iter().for_each(|_| steps.step());
         results.into_iter().map(|e| e.ok().map(|e| e.value)).collect()
     };
     points.par_chunks(bound.baker.group()).flat_map_iter(group).collect()
+}
+
+/// What the baker makes of a group.
+fn made(bound: &Bound, group: &[Point], tolerance: f64) -> Vec<Result<Estimate, TexelError>> {
+    let at: Vec<&[f64]> = group.iter().map(Point::values).collect();
+    bound.baker.texels(&at, tolerance)
 }
 
 /// Number of texels of which some channel's estimate is above the tolerance.

@@ -127,7 +127,10 @@ impl Sweep {
         let mut mu = [0.0; LANES];
         for (i, mu) in mu.iter_mut().enumerate() {
             let at = at.get(i).or(at.last())?;
-            models.push(self.model(at).ok()?);
+            let model = self.model(at).ok()?;
+            // a model that the kernel does not know is not built four times to find that out
+            model.four()?;
+            models.push(model);
             *mu = self.mu(at);
         }
         let [a, b, c, d] = &models[..] else { return None };

@@ -7,12 +7,11 @@ use super::{
 };
 use crate::cite;
 use crate::grid::{Axis, Warp};
-use crate::integrate::Estimate;
+use crate::integrate::{Estimate, View};
 use crate::math::frame;
 use crate::models::normals::{Pair, direction};
 use crate::models::{Param, Preset, normals};
 use crate::terms::{schlick_masking, vcavity};
-use glam::DVec3;
 use std::f64::consts::PI;
 
 /// Masking of each direction, and how the two go together.
@@ -141,9 +140,7 @@ impl Table {
 
     /// Of V-shaped grooves, whose facets are the half vectors; 0 where a cosine is.
     fn grooves(&self, [mu_o, mu_i]: [f64; 2], phi: f64) -> f64 {
-        let (sin, cos) = libm::sincos(phi);
-        let (wo, flat) = (direction(mu_o), direction(mu_i));
-        let wi = DVec3::new(flat.x * cos, flat.x * sin, flat.z);
+        let (wo, wi) = (direction(mu_o), View { mu: mu_i, phi }.direction());
         let Some(h) = frame::half_vector(wo, wi) else { return 0.0 };
         let g2 = vcavity::g2(wo, wi, h.wh, h.cos_d);
         let both = mu_o * mu_i;

@@ -6,7 +6,7 @@
 //! grid of 5 x 5 points each, and the neighbourhoods of the largest errors among those on finer grids again, so that neither a corner
 //! nor the ridge of grazing views slips through.
 
-use crate::cancel::{Cancel, Steps, Tell, untold};
+use crate::cancel::{Cancel, Tell, untold};
 use crate::grid::axis::count;
 use crate::grid::layout::{MAX_AXES, Point, combination};
 use crate::grid::provenance::{Reconstruction, Spread};
@@ -149,11 +149,9 @@ impl<'a> Probe<'a> {
     }
 
     fn integrate(&self, points: &[[f64; MAX_AXES]], tell: &Tell<'_>) -> Vec<Fresh> {
-        let steps = Steps::new(points.len(), tell);
         let grid = &self.bound.spec.grid;
         let places: Vec<Point> = points.iter().map(|x| grid.at_coordinates(x)).collect();
-        let done = |count: usize| (0..count).for_each(|_| steps.step());
-        let values = at_points(self.bound, &places, self.tolerance, self.cancel, &done);
+        let values = at_points(self.bound, &places, self.tolerance, self.cancel, tell);
         let fresh = |((x, point), value): ((&[f64; MAX_AXES], Point), Option<Sums>)| {
             let mut value = value?;
             self.bound.baker.decode(point.values(), &mut value);

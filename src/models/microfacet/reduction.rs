@@ -130,15 +130,18 @@ impl Kernel for Panel {
             total = total + w * self.integrand.at(self.from + step, self.to_peak + step);
         };
         let (nodes, weights) = (node.chunks_exact(LANES), weight.chunks_exact(LANES));
-        // what is left is filled up with its own first node, of weight 0
-        let (mut x, mut w) = (Lanes::all(nodes.remainder().first().copied().unwrap_or(0.5)), Lanes::all(0.0));
-        for (lane, (n, v)) in nodes.remainder().iter().zip(weights.remainder()).enumerate() {
-            (x.0[lane], w.0[lane]) = (*n, *v);
-        }
-        for (n, v) in nodes.zip(weights) {
+        let rest = nodes.remainder().iter().zip(weights.remainder());
+        for (n, v) in nodes.clone().zip(weights.clone()) {
             add(Lanes([n[0], n[1], n[2], n[3]]), Lanes([v[0], v[1], v[2], v[3]]));
         }
-        add(x, w);
+        if let Some(first) = nodes.remainder().first() {
+            // filled up with its own first node, of weight 0
+            let (mut x, mut w) = (Lanes::all(*first), Lanes::all(0.0));
+            for (lane, (n, v)) in rest.enumerate() {
+                (x.0[lane], w.0[lane]) = (*n, *v);
+            }
+            add(x, w);
+        }
         (total.0[0] + total.0[1]) + (total.0[2] + total.0[3])
     }
 }

@@ -1,9 +1,11 @@
 //! Adaptive quadrature for the checks: Kronrod's rules of 15, 21 and 31 points with the Gauss rules inside them, several channels at once,
-//! values that carry errors of their own. It shares no rule, no grading and no stopping with the bakers.
+//! values that carry errors of their own. It shares no grading and no stopping with the bakers, and no rule
+//! but the numbers of the shortest one, which some tables of one variable are integrated by (in other panels; a test below sums powers).
 //!
 //! The error of a panel is the plain difference of the two rules, and a hundredth of that of the panel it is a half of at least; where
 //! the halves change the whole by more than it admitted, theirs is raised by that factor. Dear, but not easily fooled.
 
+use crate::integrate::line;
 use std::collections::BinaryHeap;
 
 /// Most channels of one pass.
@@ -76,35 +78,8 @@ impl Rule {
     }
 }
 
-/// 15 and 7 points.
-static SHORTEST: Rule = Rule {
-    nodes: &[
-        0.991_455_371_120_812_639_206_854_697_526_329,
-        0.949_107_912_342_758_524_526_189_684_047_851,
-        0.864_864_423_359_769_072_789_712_788_640_926,
-        0.741_531_185_599_394_439_863_864_773_280_788,
-        0.586_087_235_467_691_130_294_144_691_258_384,
-        0.405_845_151_377_397_166_906_606_412_076_961,
-        0.207_784_955_007_898_467_600_689_403_773_245,
-        0.0,
-    ],
-    kronrod: &[
-        0.022_935_322_010_529_224_963_732_008_058_970,
-        0.063_092_092_629_978_553_290_700_663_189_204,
-        0.104_790_010_322_250_183_839_876_322_541_518,
-        0.140_653_259_715_525_918_745_189_590_510_238,
-        0.169_004_726_639_267_902_826_583_426_598_550,
-        0.190_350_578_064_785_409_913_256_402_421_014,
-        0.204_432_940_075_298_892_414_161_999_234_649,
-        0.209_482_141_084_727_828_012_999_174_891_714,
-    ],
-    gauss: &[
-        0.129_484_966_168_869_693_270_611_432_679_082,
-        0.279_705_391_489_276_667_901_467_771_423_780,
-        0.381_830_050_505_118_944_950_369_775_488_975,
-        0.417_959_183_673_469_387_755_102_040_816_327,
-    ],
-};
+/// 15 and 7 points, those of [`line`].
+static SHORTEST: Rule = Rule { nodes: &line::NODES, kronrod: &line::KRONROD, gauss: &line::GAUSS };
 
 /// 21 and 10 points.
 static SHORT: Rule = Rule {
