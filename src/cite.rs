@@ -132,6 +132,8 @@ cites! {
     JOHNSON_CHRISTY_1974 = "JohnsonChristy1974", "Johnson, Christy: Optical Constants of Transition Metals: Ti, V, Cr, Mn, Fe, Co, Ni, and Pd, Physical Review B 9", 1974, "https://doi.org/10.1103/PhysRevB.9.5056";
     /// Karis, split-sum environment lighting.
     KARIS_2013 = "Karis2013", "Karis: Real Shading in Unreal Engine 4, SIGGRAPH course", 2013, "https://blog.selfshadow.com/publications/s2013-shading-course/";
+    /// Karis, a formula in place of the split sum.
+    KARIS_2014 = "Karis2014", "Karis: Physically Based Shading on Mobile, Unreal Engine blog", 2014, "https://www.unrealengine.com/en-US/blog/physically-based-shading-on-mobile";
     /// Kelemen and Szirmay-Kalos, the coupled matte and specular model.
     KELEMEN_2001 = "Kelemen2001", "Kelemen, Szirmay-Kalos: A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling, Eurographics short papers", 2001, "https://doi.org/10.2312/egs.20011031";
     /// Its extension for clear coats.
@@ -180,6 +182,8 @@ cites! {
     MITSUBA = "Mitsuba06", "Jakob: Mitsuba 0.6, src/bsdfs", 2014, "https://github.com/mitsuba-renderer/mitsuba";
     /// Nakatsukasa and Trefethen, least largest errors of rational functions by weights.
     NAKATSUKASA_TREFETHEN_2020 = "NakatsukasaTrefethen2020", "Nakatsukasa, Trefethen: An Algorithm for Real and Complex Rational Minimax Approximation, SIAM Journal on Scientific Computing 42(5)", 2020, "https://doi.org/10.1137/19M1281897";
+    /// Narkowicz, formulas in place of the split sum.
+    NARKOWICZ_2014 = "Narkowicz2014", "Narkowicz: Analytical DFG Term for IBL, blog", 2014, "https://knarkowicz.wordpress.com/2014/12/27/analytical-dfg-term-for-ibl/";
     /// Nelder and Mead, minimisation without derivatives.
     NELDER_MEAD_1965 = "NelderMead1965", "Nelder, Mead: A Simplex Method for Function Minimization, The Computer Journal 7(4)", 1965, "https://doi.org/10.1093/comjnl/7.4.308";
     /// Neubelt and Pettineo, cloth in a game.

@@ -12,6 +12,8 @@ mod outside;
 mod plots;
 mod preview;
 mod report;
+#[cfg(unix)]
+mod robust;
 mod schema;
 #[cfg(unix)]
 mod signals;

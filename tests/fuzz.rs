@@ -7,7 +7,7 @@
 //! ```sh
 //! BRDFBAKE_FUZZ_SECONDS=600 cargo test --release --test files -- --ignored --nocapture fuzz
 //! ```
-//! What makes a reader panic is written into `target/fuzz/READER`; when it is mended it is kept in `tests/fuzz/found/READER`, which
+//! (`BRDFBAKE_FUZZ_READER` names one of them). What makes a reader panic is written into `target/fuzz/READER`; when it is mended it is kept in `tests/fuzz/found/READER`, which
 //! every run reads first.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "test")]
 
@@ -102,7 +102,8 @@ fn changed_files_are_errors_for_long() {
     // other inputs in every run; the seed is in the names of what is found
     let seed = u64::from(std::process::id());
     let mut all = Vec::new();
-    for reader in READERS {
+    let only = std::env::var("BRDFBAKE_FUZZ_READER").ok();
+    for reader in READERS.iter().filter(|r| only.as_ref().is_none_or(|o| o == r.id)) {
         let begun = Instant::now();
         let (count, failed) = fuzz(reader, seed, |_| begun.elapsed() < seconds);
         println!(
@@ -117,6 +118,12 @@ fn changed_files_are_errors_for_long() {
     println!("{} s", start.elapsed().as_secs());
     assert!(all.is_empty(), "{all:?}");
 }
+
+/// What is taken from outside: bytes, text, a folder whose files are read.
+const FROM_OUTSIDE: [&str; 4] = ["(bytes: &[u8]", "(source: &str,", "(text: &str) ->", "(folder: &Path) ->"];
+
+/// Functions of such a form that read nothing: one removes files that were left behind, one escapes what is printed.
+const NO_READERS: [&str; 2] = ["encode/atomic.rs sweep", "math/shown.rs show"];
 
 /// Public functions of the library that take bytes or text from outside: each is in the table of readers.
 #[test]
@@ -138,7 +145,7 @@ fn every_reader_is_among_them() {
             }
             let takes = |line: &&str| {
                 let signature = line.trim_start();
-                let from_outside = ["(bytes: &[u8]", "(source: &str,"].iter().any(|a| signature.contains(a));
+                let from_outside = FROM_OUTSIDE.iter().any(|a| signature.contains(a));
                 signature.starts_with("pub fn ") && from_outside
             };
             for line in source.lines().filter(takes) {
@@ -148,6 +155,7 @@ fn every_reader_is_among_them() {
         }
     }
     let covered: BTreeSet<String> = READERS.iter().flat_map(|r| r.covers).map(|c| (*c).to_owned()).collect();
-    let missing: Vec<&String> = taken.difference(&covered).collect();
+    let missing: Vec<&String> =
+        taken.difference(&covered).filter(|f| !NO_READERS.contains(&f.as_str())).collect();
     assert!(missing.is_empty(), "no reader in tests/fuzz/readers.rs covers {missing:?}: add a line there");
 }

@@ -4,7 +4,7 @@ use super::{Exit, Failure, engine, output, scene};
 use crate::cancel::Cancel;
 use crate::encode::atomic;
 use crate::math::figures::{exact, significant};
-use crate::pipeline::preview::{self, Panel, PreviewError, Scene, Sky, Surface};
+use crate::pipeline::preview::{self, Mesh, Panel, PreviewError, Scene, Sky, Surface};
 use crate::pipeline::{InMemoryError, pool};
 use crate::plan::scene::SurveyOptions;
 use base64::Engine as _;
@@ -12,15 +12,35 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Shown behind the help.
-const EXAMPLES: &str = "Examples:\n  brdfbake preview --roughness 0.2,0.5 --size 64 -o spheres.png";
+const EXAMPLES: &str = concat!(
+    "Examples:",
+    "\n  brdfbake preview --roughness 0.2,0.5 --size 64 -o spheres.png",
+    "\n  brdfbake preview --scene scene.glb --mesh --turn 30 -o mesh.png",
+);
+
+/// What says how the spheres of a row are.
+const SPHERES: [&str; 3] = ["roughness", "base", "metallic"];
 
 /// Arguments of `preview`.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Shade the materials of a glTF file, each by the mean of its texels, in place of a row over roughness.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["roughness", "base", "metallic"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = SPHERES)]
     scene: Option<PathBuf>,
+    /// Shade the meshes of that file in place of spheres, seen along -z without perspective.
+    #[arg(long, requires = "scene", conflicts_with_all = SPHERES)]
+    mesh: bool,
+    /// Turn the meshes by this angle, in degrees, round the upright axis, to the right.
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        requires = "mesh",
+        conflicts_with_all = SPHERES,
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
+    turn: f64,
     /// Roughness of each sphere.
     #[arg(long, value_name = "R", value_delimiter = ',', default_value = "0.1,0.3,0.5,0.7,1")]
     roughness: Vec<f64>,
@@ -39,7 +59,7 @@ pub struct Args {
     /// Add a rectangle of light, shaded by transformed cosines.
     #[arg(long)]
     panel: bool,
-    /// Diameter of a sphere in pixels.
+    /// Diameter of a sphere in pixels, or side of the picture of a mesh.
     #[arg(long, value_name = "PIXELS", default_value_t = 128, value_parser = clap::value_parser!(u16).range(8..=4096))]
     size: u16,
     /// Output files, .png or .exr; may be given several times. Default: preview.png
@@ -67,10 +87,11 @@ pub enum Terminal {
 /// # Errors
 /// [`Failure`] for numbers out of range, an engine without a split sum, a scene that is refused, a file that cannot be written.
 pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
-    let surfaces = surfaces(args)?;
+    let (surfaces, mesh) = surfaces(args)?;
     let engine = args.engine.as_deref().map(engine::find).transpose()?;
     let scene = Scene {
         surfaces,
+        mesh,
         sky: if args.furnace { Sky::WHITE } else { Sky::built_in() },
         panel: args.panel.then(Panel::built_in),
         size: usize::from(args.size),
@@ -108,22 +129,32 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         output::data(&shown(terminal, &png()?))?;
     }
     if args.json {
-        output::data(&serde_json::json!({ "spheres": made.spheres }).to_string())?;
+        let what = if args.mesh { "materials" } else { "spheres" };
+        output::data(&serde_json::json!({ what: made.spheres }).to_string())?;
     } else {
         output::data(&text(&made))?;
     }
     Ok(Exit::Done)
 }
 
-/// The spheres that are asked for.
-fn surfaces(args: &Args) -> Result<Vec<Surface>, Failure> {
+/// The spheres that are asked for, or the mesh with its materials.
+fn surfaces(args: &Args) -> Result<(Vec<Surface>, Option<Mesh>), Failure> {
+    if !args.turn.is_finite() {
+        return Err(Failure::usage("--turn takes an angle in degrees"));
+    }
     if let Some(path) = &args.scene {
         let options = SurveyOptions::default();
-        let (surfaces, left_out) = preview::materials(path, &options).map_err(failure)?;
+        let (surfaces, mesh, left_out) = if args.mesh {
+            let (surfaces, mesh, left_out) = preview::mesh(path, args.turn, &options).map_err(failure)?;
+            (surfaces, Some(mesh), left_out)
+        } else {
+            let (surfaces, left_out) = preview::materials(path, &options).map_err(failure)?;
+            (surfaces, None, left_out)
+        };
         for line in left_out {
             output::talk(&format!("not shown: {}", crate::report::text::clean(&line)));
         }
-        return Ok(surfaces);
+        return Ok((surfaces, mesh));
     }
     let unit = |name: &str, v: f64| match (0.0..=1.0).contains(&v) {
         true => Ok(v),
@@ -138,7 +169,7 @@ fn surfaces(args: &Args) -> Result<Vec<Surface>, Failure> {
         let roughness = unit("roughness", *r)?;
         Ok(Surface { name: format!("roughness {}", exact(r)), base, metallic, roughness, f0: 0.04 })
     };
-    args.roughness.iter().map(sphere).collect()
+    Ok((args.roughness.iter().map(sphere).collect::<Result<_, Failure>>()?, None))
 }
 
 fn text(made: &preview::Preview) -> String {
@@ -146,6 +177,10 @@ fn text(made: &preview::Preview) -> String {
         "Rows: integrated; as the shader reads its tables; difference. RMSE in codes of 8-bit sRGB, the rest linear.".to_owned(),
     ];
     for s in &made.spheres {
+        if s.pixels == 0 {
+            lines.push(format!("{}: not seen", crate::report::text::clean(&s.surface.name)));
+            continue;
+        }
         lines.push(format!(
             "{}: RMSE {} of 255, largest {}; the table alone: RMSE {}, largest {}; the integrals themselves {}",
             crate::report::text::clean(&s.surface.name),

@@ -29,6 +29,9 @@ pub struct Args {
     /// Integrand evaluations that a table may take when its texels are integrated anew to see what they are off by; 0 for none.
     #[arg(long, value_name = "N", default_value_t = EVALUATIONS)]
     evaluations: u64,
+    /// Also draw error against time, of this machine: a section of its own, that differs from run to run.
+    #[arg(long)]
+    timings: bool,
     /// Where the pages go; the folder itself if none.
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -46,8 +49,14 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
         p.file_name().map_or_else(|| "the other folder".to_owned(), |n| n.to_string_lossy().into_owned())
     };
     let other = args.against.as_ref().map(name);
-    let asked =
-        Asked { against: args.against.as_deref().zip(other.as_deref()), evaluations: args.evaluations };
+    if args.timings && args.evaluations == 0 {
+        return Err(Failure::usage("--timings: nothing is timed with --evaluations 0"));
+    }
+    let asked = Asked {
+        against: args.against.as_deref().zip(other.as_deref()),
+        evaluations: args.evaluations,
+        timings: args.timings,
+    };
     let made = pool(None)?.install(|| pages::of_folder(&args.folder, &asked, cancel)).map_err(failure)?;
     let out = args.out.as_ref().unwrap_or(&args.folder);
     std::fs::create_dir_all(out).map_err(|e| Failure::io(out.display(), &e))?;

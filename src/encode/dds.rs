@@ -101,7 +101,11 @@ impl Encoder for Dds {
     }
 
     fn read(&self, bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
-        super::dds_read::read(bytes, cancel)
+        super::dds_read::read(bytes, 0, cancel)
+    }
+
+    fn read_level(&self, bytes: &[u8], level: usize, cancel: &Cancel) -> Result<Image, ReadError> {
+        super::dds_read::read(bytes, level, cancel)
     }
 
     fn mip_storages(&self) -> &'static [Storage] {

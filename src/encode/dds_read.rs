@@ -1,6 +1,6 @@
 //! Reads DDS: the formats that are written; the formats of the header without DX10 (Direct3D 9 codes 36 and 111 to 116, as
 //! tables of linearly transformed cosines are often shipped, and the codes of BC4 and BC5); pixels that are told by bit masks.
-//! Largest level, slices and layers stacked.
+//! One level, slices and layers stacked.
 
 use super::dds::{HEAD, TEXTURE2D, TEXTURE3D, storage};
 use super::dds_masks::Masks;
@@ -23,6 +23,21 @@ struct Header {
     pixels: Pixels,
     /// Where the pixels begin.
     start: usize,
+}
+
+impl Header {
+    /// As if the file began with a smaller level.
+    fn level(mut self, level: usize) -> Result<Header, ReadError> {
+        if level >= self.levels.min(32) as usize || self.slices > 1 {
+            return Err(fault(format!("level {level} of {} in {} slices", self.levels, self.slices)));
+        }
+        for _ in 0..level {
+            let size = self.pixels.bytes([self.width, self.height, 1]);
+            self.start = self.start.saturating_add(size.unwrap_or(usize::MAX));
+            (self.width, self.height) = ((self.width / 2).max(1), (self.height / 2).max(1));
+        }
+        Ok(self)
+    }
 }
 
 /// How a pixel lies in the file.
@@ -57,8 +72,11 @@ impl Pixels {
     }
 }
 
-pub(super) fn read(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
-    let h = header(bytes)?;
+pub(super) fn read(bytes: &[u8], level: usize, cancel: &Cancel) -> Result<Image, ReadError> {
+    let mut h = header(bytes)?;
+    if level > 0 {
+        h = h.level(level)?;
+    }
     let height = h.height.saturating_mul(h.slices);
     if h.width.saturating_mul(height).saturating_mul(h.pixels.components()) > MAX_SAMPLES {
         return Err(ReadError::Samples { format: FORMAT, width: h.width, height });

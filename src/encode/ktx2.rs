@@ -98,7 +98,11 @@ impl Encoder for Ktx2 {
     }
 
     fn read(&self, bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
-        ktx2_read::read(bytes, cancel)
+        ktx2_read::read(bytes, 0, cancel)
+    }
+
+    fn read_level(&self, bytes: &[u8], level: usize, cancel: &Cancel) -> Result<Image, ReadError> {
+        ktx2_read::read(bytes, level, cancel)
     }
 
     fn joins(&self) -> bool {

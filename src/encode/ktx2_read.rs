@@ -1,4 +1,4 @@
-//! Reads KTX2 of the formats that are written: one face, the largest level, slices and layers stacked.
+//! Reads KTX2 of the formats that are written: one face, one level, slices and layers stacked.
 //!
 //! By hand: the crate `ktx2` (0.5) panics on a descriptor with a block dimension of 256, and little of it would be used.
 
@@ -20,7 +20,7 @@ const MAX_TEXT: usize = 1 << 24;
 struct Raw {
     storage: Storage,
     components: usize,
-    /// Width, height, depth, layers; 0 where there is none.
+    /// Width, height, depth of the level, layers; 0 where there is none.
     extent: [usize; 4],
     /// The value of the key `brdfbake`; empty if there is none.
     provenance: String,
@@ -28,7 +28,7 @@ struct Raw {
     pixels: Vec<u8>,
 }
 
-fn raw(bytes: &[u8], cancel: &Cancel) -> Result<Raw, ReadError> {
+fn raw(bytes: &[u8], level: usize, cancel: &Cancel) -> Result<Raw, ReadError> {
     let format = word(bytes, 12)?;
     let (storage, components) =
         storage(format).ok_or_else(|| fault(format!("VkFormat {format} is not supported")))?;
@@ -39,6 +39,13 @@ fn raw(bytes: &[u8], cancel: &Cancel) -> Result<Raw, ReadError> {
     let mut extent = [0; 4];
     for (n, at) in extent.iter_mut().zip([20, 24, 28, 32]) {
         *n = word(bytes, at)? as usize;
+    }
+    let levels = word(bytes, 40)?.max(1) as usize;
+    if level >= levels.min(32) {
+        return Err(fault(format!("level {level} of {levels}")));
+    }
+    for n in extent[..3].iter_mut().filter(|n| **n > 0) {
+        *n = (*n >> level).max(1);
     }
     let width = extent[0];
     let height = extent[1..].iter().fold(1usize, |height, n| height.saturating_mul((*n).max(1)));
@@ -51,7 +58,7 @@ fn raw(bytes: &[u8], cancel: &Cancel) -> Result<Raw, ReadError> {
     let slices = extent[2].max(1).saturating_mul(extent[3].max(1));
     let size = texels::bytes(storage, components, [width, extent[1].max(1), slices])
         .ok_or(ReadError::Samples { format: FORMAT, width, height })?;
-    let [start, length] = [80, 88].map(|at| long(bytes, at));
+    let [start, length] = [80, 88].map(|at| long(bytes, at + 24 * level));
     let level = part(bytes, start?, length?)?;
     let scheme = word(bytes, 44)?;
     let pixels = match scheme {
@@ -68,8 +75,8 @@ fn raw(bytes: &[u8], cancel: &Cancel) -> Result<Raw, ReadError> {
     Ok(Raw { storage, components, extent, provenance, pixels })
 }
 
-pub(super) fn read(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
-    let raw = raw(bytes, cancel)?;
+pub(super) fn read(bytes: &[u8], level: usize, cancel: &Cancel) -> Result<Image, ReadError> {
+    let raw = raw(bytes, level, cancel)?;
     let [width, rest @ ..] = raw.extent;
     let [rows, depth, layers] = rest.map(|n| n.max(1));
     let height = rows * depth * layers;

@@ -187,6 +187,19 @@ pub trait Encoder: Debug + Send + Sync {
         let _ = cancel;
         Err(ReadError::Unknown(bytes.iter().copied().take(8).collect()))
     }
+    /// Reads a level of a pyramid, the largest as 0. Containers of which only that is read refuse the others.
+    ///
+    /// # Errors
+    /// As [`Encoder::read`], and for a level that the file has not.
+    fn read_level(&self, bytes: &[u8], level: usize, cancel: &Cancel) -> Result<Image, ReadError> {
+        match level {
+            0 => self.read(bytes, cancel),
+            _ => Err(ReadError::Fault {
+                format: self.id(),
+                fault: "only its largest level is read".to_owned(),
+            }),
+        }
+    }
     /// Storages of pyramids (maps with levels) that it takes; none if it holds no pyramids.
     fn mip_storages(&self) -> &'static [Storage] {
         &[]

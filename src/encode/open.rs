@@ -18,9 +18,17 @@ pub fn read_bytes(bytes: &[u8]) -> Result<Image, ReadError> {
 /// # Errors
 /// As [`read_bytes`]; [`ReadError::Cancelled`].
 pub fn read_bytes_until(cancel: &Cancel, bytes: &[u8]) -> Result<Image, ReadError> {
+    read_level_until(cancel, bytes, 0)
+}
+
+/// A level of a pyramid in memory, the largest as 0.
+///
+/// # Errors
+/// As [`read_bytes_until`], and for a level that the file has not, or of a container of which only the largest is read.
+pub fn read_level_until(cancel: &Cancel, bytes: &[u8], level: usize) -> Result<Image, ReadError> {
     let found = super::ENCODERS.iter().find(|e| e.magic().iter().any(|m| bytes.starts_with(m)));
     let read = match found {
-        Some(encoder) => encoder.read(bytes, cancel),
+        Some(encoder) => encoder.read_level(bytes, level, cancel),
         None => Err(ReadError::Unknown(bytes.iter().copied().take(8).collect())),
     };
     // a read that was stopped is incomplete, or failed because it was stopped

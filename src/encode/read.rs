@@ -4,7 +4,9 @@
 //! is an error, never a panic and never a picture with holes in it.
 
 use super::coding::Coding;
-pub use super::open::{load, load_until, read_bytes, read_bytes_until, read_file, read_file_until};
+pub use super::open::{
+    load, load_until, read_bytes, read_bytes_until, read_file, read_file_until, read_level_until,
+};
 use super::storage::Storage;
 use crate::cancel::Cancelled;
 use crate::grid::Provenance;

@@ -242,21 +242,30 @@ impl Axis {
         self.index_at(self.coordinate_of(Slope { value, slope: 1.0 }, Slope::number(coupled))).slope
     }
 
+    /// Operations of the texture coordinate, as [`Axis::coordinate_formula`] has it.
+    #[must_use]
+    pub fn operations(&self) -> usize {
+        self.place().operations()
+    }
+
     /// The texture coordinate that a shader computes from a value of the domain, as a formula in the ids of this quantity and of the
     /// base quantity of a coupling; see [`PlainText`]. A reader clamps it to [0, 1].
     #[must_use]
     pub fn coordinate_formula(&self) -> String {
+        self.place().write(&PlainText, true)
+    }
+
+    fn place(&self) -> Expression {
         let [lo, hi] = self.domain;
         let number = Expression::number;
         let v = Expression::name(self.quantity.id).minus(number(lo)).over(number(hi - lo));
         let coupled = Expression::name(self.warp.couples_to().unwrap_or_default());
         let x = self.spread(v, coupled);
         let len = count(self.len);
-        let place = match self.texel {
+        match self.texel {
             Texel::Center => x.minus(number(self.offset / len)),
             Texel::Endpoint => x.times(number(len - 1.0)).plus(number(0.5 - self.offset)).over(number(len)),
-        };
-        place.write(&PlainText, true)
+        }
     }
 }
 

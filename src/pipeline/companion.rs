@@ -1,6 +1,8 @@
 //! Files that are made of the tables of a run beside those of its outputs, such as its report.
 
+use super::map::MapEntry;
 use super::{Manifest, TableRecord};
+use crate::cancel::{Cancel, Cancelled};
 use crate::grid::Table;
 use crate::plan::Plan;
 use std::path::Path;
@@ -17,11 +19,24 @@ pub struct Seen {
 }
 
 /// Makes files of the tables of a run. It must not hold the tables themselves: they are large.
-pub trait Companion {
+pub trait Companion: Send {
     /// All names that its files may have.
     fn names(&self, plan: &Plan) -> Vec<String>;
     /// A table is baked, verified and encoded.
-    fn table(&mut self, record: &TableRecord, seen: Seen);
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn table(&mut self, record: &TableRecord, seen: Seen, cancel: &Cancel) -> Result<(), Cancelled>;
+    /// A map is made; names and bytes of its files.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn map(
+        &mut self,
+        entry: &MapEntry,
+        files: &[(String, Vec<u8>)],
+        cancel: &Cancel,
+    ) -> Result<(), Cancelled>;
     /// All tables are there; the stale files of the manifest are not known yet. Gives the files.
     fn finish(&mut self, manifest: &Manifest) -> Vec<(String, Vec<u8>)>;
 }

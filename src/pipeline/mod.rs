@@ -22,6 +22,8 @@ pub mod memory;
 mod memory_map;
 #[cfg(feature = "report")]
 pub mod pages;
+#[cfg(feature = "report")]
+mod pages_map;
 #[cfg(all(feature = "report", feature = "scene"))]
 pub mod preview;
 mod reached;
@@ -317,7 +319,7 @@ pub fn run_with(
     let mut again = Again::look(plan, settings, companion.is_none(), &mut files)?;
     let mut work = Work { plan, settings, pool: &pool, cancel, progress, kept: 0 };
     let tables = work.tables(&mut again, &mut files, companion.as_deref_mut())?;
-    let maps = work.maps(&mut again, &mut files)?;
+    let maps = work.maps(&mut again, &mut files, companion.as_deref_mut())?;
     let mut manifest = Manifest::new(plan, tables, maps, Vec::new());
     manifest.set_sizes(|name| files.staged(name));
     again.give(&manifest, &files, progress);

@@ -1,16 +1,19 @@
 //! Reports: of a bake while it runs, with all that it knows of its texels; and of a folder, with what its files say and a sample that is
 //! integrated anew.
 
+use super::map::MapEntry;
+use super::pages_map::{self, told};
 use super::{Companion, MANIFEST, Manifest, Seen, TableRecord, transaction::is_plain};
 use crate::cancel::{Cancel, Cancelled};
 use crate::encode::read::{self, Image};
 use crate::grid::provenance::SCHEMA;
 use crate::grid::{Grid, Provenance, Table};
 use crate::plan::Plan;
-use crate::report::page::{self, Against, FileView, Head, Origin, Section, Texels, View};
+use crate::report::page::{self, Against, Convergence, FileView, Head, Origin, Section, Texels, View};
 use crate::tables::Bound;
 use crate::tables::driver::bake_again;
 use crate::tables::spec::Request;
+use crate::verify::converge::{self, ConvergeError, converge};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -18,6 +21,10 @@ use std::path::{Path, PathBuf};
 pub const EVALUATIONS: u64 = 20_000_000;
 /// Texels that are integrated anew in any case.
 const LEAST: usize = 16;
+/// Texels of the chart of error against evaluations, and the power of two of its largest budget.
+const CHART: (usize, u32) = (24, 12);
+/// Evaluations of a texel, on average, beyond which there is no such chart: it asks for much smaller errors than the bake.
+const COSTLY: u64 = 20_000;
 
 /// Makes the report of a bake as its tables come.
 #[derive(Debug, Default)]
@@ -37,10 +44,11 @@ impl Collector {
 
 impl Companion for Collector {
     fn names(&self, plan: &Plan) -> Vec<String> {
-        std::iter::once(page::NAME.to_owned()).chain((0..plan.tables.len()).map(page::page_of)).collect()
+        let units = plan.tables.len() + plan.maps.len();
+        std::iter::once(page::NAME.to_owned()).chain((0..units).map(page::page_of)).collect()
     }
 
-    fn table(&mut self, record: &TableRecord, seen: Seen) {
+    fn table(&mut self, record: &TableRecord, seen: Seen, cancel: &Cancel) -> Result<(), Cancelled> {
         let Seen { table, stored, seconds } = seen;
         let file = record.files.first().map_or_else(String::new, |f| f.file.clone());
         let texels = Texels {
@@ -52,8 +60,24 @@ impl Companion for Collector {
             evaluations: table.evaluations,
             origin: Origin::Bake,
         };
-        let view = view(record, Ok(texels), self.timings.then_some(seconds), None);
+        let mut view = view(record, Ok(texels), self.timings.then_some(seconds), None);
+        view.convergence = convergence(&record.provenance, self.timings, cancel)?;
         self.sections.push(page::section(&view, None));
+        Ok(())
+    }
+
+    fn map(
+        &mut self,
+        entry: &MapEntry,
+        files: &[(String, Vec<u8>)],
+        cancel: &Cancel,
+    ) -> Result<(), Cancelled> {
+        let bytes = |name: &str| {
+            let found = files.iter().find(|(file, _)| file == name);
+            found.map(|(_, bytes)| bytes.clone()).ok_or_else(|| "not written".to_owned())
+        };
+        self.sections.push(page::map_section(&pages_map::view(entry, &bytes, cancel)?));
+        Ok(())
     }
 
     fn finish(&mut self, manifest: &Manifest) -> Vec<(String, Vec<u8>)> {
@@ -94,6 +118,8 @@ pub struct Asked<'a> {
     pub against: Option<(&'a Path, &'a str)>,
     /// Evaluations that each table may take when it is integrated anew; 0 for none.
     pub evaluations: u64,
+    /// Show error against time?
+    pub timings: bool,
 }
 
 /// The report of a folder: names and bytes of its pages.
@@ -131,10 +157,15 @@ pub fn of_folder(
             against = Some(Against { provenance: record.provenance.clone(), table });
         }
         cancel.check()?;
-        sections.push(page::section(
-            &view(record, texels, None, against),
-            other.as_ref().map(|(.., name)| *name),
-        ));
+        let mut view = view(record, texels, None, against);
+        if asked.evaluations > 0 {
+            view.convergence = convergence(&record.provenance, asked.timings, cancel)?;
+        }
+        sections.push(page::section(&view, other.as_ref().map(|(.., name)| *name)));
+    }
+    for entry in &manifest.maps {
+        let bytes = |name: &str| read::load_until(cancel, &folder.join(name)).map_err(told);
+        sections.push(page::map_section(&pages_map::view(entry, &bytes, cancel)?));
     }
     Ok(page::pages(&head, &sections))
 }
@@ -184,6 +215,30 @@ fn view(
         texels,
         seconds,
         against,
+        convergence: Err("not asked for".to_owned()),
+    }
+}
+
+/// Error against evaluations of a table, or why it is not drawn.
+fn convergence(
+    p: &Provenance,
+    timings: bool,
+    cancel: &Cancel,
+) -> Result<Result<Convergence, String>, Cancelled> {
+    let texels: usize = p.axes.iter().map(|r| r.axis.len).product();
+    let each = p.integration.evaluations / texels.max(1) as u64;
+    if each > COSTLY {
+        return Ok(Err(format!("a texel takes {each} evaluations; `converge` draws it")));
+    }
+    let bound = match bind(p) {
+        Ok(bound) => bound,
+        Err(why) => return Ok(Err(why)),
+    };
+    let (texels, power) = CHART;
+    match converge(&bound, converge::Asked { seed: 1, texels, power, cancel }) {
+        Ok((chart, times)) => Ok(Ok(Convergence { chart, times: timings.then_some(times) })),
+        Err(ConvergeError::Cancelled(stopped)) => Err(stopped),
+        Err(why) => Ok(Err(why.to_string())),
     }
 }
 
@@ -200,9 +255,7 @@ fn table(folder: &Path, record: &TableRecord, cancel: &Cancel) -> Result<(Table,
                 Ok(table) => return Ok((table, file.file.clone())),
                 Err(fault) => why.push(format!("{}: {fault}", file.file)),
             },
-            // its path has no place in a page
-            Err(read::ReadError::Io { source, .. }) => why.push(format!("{}: {}", file.file, source.kind())),
-            Err(fault) => why.push(format!("{}: {fault}", file.file)),
+            Err(fault) => why.push(format!("{}: {}", file.file, told(fault))),
         }
     }
     Err(if why.len() > 1 { why[1..].join("; ") } else { why.remove(0) })

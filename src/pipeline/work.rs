@@ -40,7 +40,7 @@ impl Work<'_> {
             match self.pool.install(|| table::make(plan, planned, index, shared, keep, cancel, progress)) {
                 Ok(made) if findings.is_empty() => {
                     if let Some((companion, seen)) = companion.as_mut().zip(made.seen) {
-                        companion.table(&made.record, seen);
+                        self.pool.install(|| companion.table(&made.record, seen, cancel))?;
                     }
                     let doubtful = |f: &&Finding| self.settings.strict && f.result.is_doubt();
                     doubts.extend(made.warnings.iter().filter(doubtful).cloned());
@@ -65,6 +65,7 @@ impl Work<'_> {
         &mut self,
         again: &mut Again<'_>,
         files: &mut Transaction<'_>,
+        mut companion: Option<&mut (dyn Companion + '_)>,
     ) -> Result<Vec<map::MapEntry>, PipelineError> {
         let mut maps = Vec::new();
         for (index, planned) in self.plan.maps.iter().enumerate() {
@@ -75,6 +76,9 @@ impl Work<'_> {
             }
             let make = || map::make(&self.plan.name, planned, index, self.cancel, self.progress);
             let made = self.pool.install(make).map_err(|error| of_map(planned.name(), error))?;
+            if let Some(companion) = companion.as_mut() {
+                self.pool.install(|| companion.map(&made.entry, &made.files, self.cancel))?;
+            }
             for (name, bytes) in &made.files {
                 files.stage(name, bytes)?;
             }

@@ -9,6 +9,9 @@ const FRAME: [f64; 4] = [84.0, 44.0, 640.0, 540.0];
 const GRID: [u8; 3] = [222, 222, 222];
 const LEVEL: [u8; 3] = [130, 130, 130];
 
+/// Pixels between lines of words at least.
+const CLOSE: f64 = 14.0;
+
 /// A curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
@@ -51,7 +54,7 @@ impl Chart {
         let mut d = Drawing::new(SIZE, &self.title);
         let points = || self.curves.iter().flat_map(|c| &c.points);
         let x = decades(points().map(|p| p[0]));
-        let y = decades(points().map(|p| p[1]));
+        let y = decades(points().map(|p| p[1]).chain(self.levels.iter().map(|l| l.0)));
         let place = |v: f64, [lo, hi]: [i32; 2], from: f64, to: f64| {
             from + (to - from) * (libm::log10(v) - f64::from(lo)) / f64::from(hi - lo)
         };
@@ -67,9 +70,15 @@ impl Chart {
             d.line([[FRAME[0], py(power(e))], [FRAME[2], py(power(e))]], GRID, 1.0, false);
             d.text([FRAME[0] - 8.0, py(power(e)) + 4.0], 1.0, INK, tick(e));
         }
-        for (level, words) in self.levels.iter().filter(|l| l.0 >= power(y[0]) && l.0 <= power(y[1])) {
-            d.line([[FRAME[0], py(*level)], [FRAME[2], py(*level)]], LEVEL, 1.5, true);
-            d.text([FRAME[2] - 4.0, py(*level) - 4.0], 1.0, LEVEL, words.clone());
+        let mut right = f64::INFINITY;
+        for (level, words) in &self.levels {
+            let at = py(*level);
+            d.line([[FRAME[0], at], [FRAME[2], at]], LEVEL, 1.5, true);
+            // words that would stand on others go to the other side
+            let (x, anchor) =
+                if (at - right).abs() < CLOSE { (FRAME[0] + 4.0, 0.0) } else { (FRAME[2] - 4.0, 1.0) };
+            right = if anchor > 0.5 { at } else { right };
+            d.text([x, at - 4.0], anchor, LEVEL, words.clone());
         }
         let [left, top, right, bottom] = FRAME;
         let corners = [[left, top], [right, top], [right, bottom], [left, bottom], [left, top]];

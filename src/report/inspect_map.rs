@@ -44,6 +44,15 @@ pub(super) fn map(lines: &mut Lines, text: &str) -> bool {
     true
 }
 
+/// What is told of a conversion and of lobes, as lines of text.
+#[cfg(feature = "report")]
+pub(super) fn beside(record: &Value) -> String {
+    let mut lines = Lines::default();
+    conversion(&mut lines, &record["conversion"]);
+    lobes(&mut lines, &record["sbrdf"]);
+    lines.finish()
+}
+
 /// What a conversion of other lobes cost.
 fn conversion(lines: &mut Lines, json: &Value) {
     let number = |v: &Value| v.as_f64().unwrap_or(f64::NAN);

@@ -131,6 +131,17 @@ struct Pictured {
 fn pictured(image: &Image) -> Vec<Pictured> {
     let Some(Claim::Unknown { text, .. }) = &image.provenance else { return Vec::new() };
     let Ok(json) = serde_json::from_str::<Value>(text) else { return Vec::new() };
+    told(&json).into_iter().map(|(_, p)| p).collect()
+}
+
+/// The worst texels of a record as spheres: what each is, the side of its picture, and the pixels.
+#[cfg(feature = "report")]
+pub(super) fn worst_spheres(record: &Value) -> Vec<(String, usize, Vec<[u8; 3]>)> {
+    told(record).iter().map(|(name, p)| (name.clone(), TILE, sphere(p))).collect()
+}
+
+/// The worst texels of a record with their names.
+fn told(json: &Value) -> Vec<(String, Pictured)> {
     let numbers =
         |v: &Value| -> Vec<f64> { v.as_array().into_iter().flatten().filter_map(Value::as_f64).collect() };
     let one = |v: &Value| {
@@ -141,7 +152,9 @@ fn pictured(image: &Image) -> Vec<Pictured> {
         let facets: Vec<Facet> = v["facets"].as_array()?.iter().filter_map(facet).collect();
         let [x, y, z, alpha_max, alpha_min, angle] = numbers(&v["lobe"])[..] else { return None };
         let normal = DVec3::new(x, y, z).try_normalize()?;
-        Some(Pictured { facets, lobe: Lobe { normal, alpha_max, alpha_min, angle } })
+        let whole = |key: &str| v[key].as_u64().unwrap_or(0);
+        let name = format!("level {} ({}, {})", whole("level"), whole("x"), whole("y"));
+        Some((name, Pictured { facets, lobe: Lobe { normal, alpha_max, alpha_min, angle } }))
     };
     json["pictured"].as_array().into_iter().flatten().filter_map(one).collect()
 }

@@ -9,6 +9,7 @@ use super::error::Fault;
 use super::geometry::{self, Geometry};
 use super::json::Node;
 use super::material::{self, Animated, Material, Tables};
+use super::mesh::{self, Meshes};
 use super::uri::{Checked, check_uri};
 use super::{ExternalFile, Limits, Scene, Warning};
 use crate::math::shown::show;
@@ -43,6 +44,7 @@ pub(super) fn scene(tree: &Value, bin: Option<&[u8]>, limits: &Limits) -> Result
         external_files: external_files(&root, limits)?,
         images: Vec::new(),
         geometry: Geometry::default(),
+        drawn: Meshes::default(),
         warnings: Vec::new(),
     };
     scene.warnings = declaration_warnings(&scene);
@@ -56,6 +58,9 @@ pub(super) fn scene(tree: &Value, bin: Option<&[u8]>, limits: &Limits) -> Result
     scene.images = embedded::images(&root, &wanted, bin, limits)?;
     if limits.texels {
         scene.geometry = geometry::read(&root, &scene.materials, bin, limits)?;
+    }
+    if limits.meshes {
+        scene.drawn = mesh::read(&root, bin, limits)?;
     }
     Ok(scene)
 }

@@ -93,7 +93,7 @@ pub struct Primitive {
 pub struct Accessor {
     /// Number of elements.
     pub count: u64,
-    /// Numbers of an element: 1 or 2.
+    /// Numbers of an element: 1 to 3.
     pub numbers: u64,
     /// Their type.
     pub component: Component,
@@ -163,7 +163,18 @@ const COMPONENTS: [(u64, Component); 6] = [
 /// Types of indices.
 const UNSIGNED: &str = "a component type of indices: 5121, 5123 or 5125";
 /// Types of texture coordinates, with those of `KHR_mesh_quantization`.
-const COORDINATES: &str = "a component type of texture coordinates: 5120, 5121, 5122, 5123 or 5126";
+const COORDINATES: &str = "a component type of coordinates: 5120, 5121, 5122, 5123 or 5126";
+
+/// What an accessor holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Elements {
+    /// Places in lists.
+    Index,
+    /// Texture coordinates.
+    Pair,
+    /// Positions, normals.
+    Vector,
+}
 
 /// Extensions of buffer views that are not decoded.
 const COMPRESSED: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
@@ -179,7 +190,8 @@ impl Component {
         }
     }
 
-    fn read(node: &Node<'_>, indices: bool) -> Result<Component, Fault> {
+    fn read(node: &Node<'_>, elements: Elements) -> Result<Component, Fault> {
+        let indices = elements == Elements::Index;
         let code = node.whole()?;
         let known = COMPONENTS.iter().find(|(c, _)| *c == code).map(|(_, component)| *component);
         let unsigned = |c: &Component| matches!(c, Component::U8 | Component::U16 | Component::U32);
@@ -221,15 +233,27 @@ pub(super) fn read(
     }
     let accessors = out.primitives.iter().flat_map(|p| p.sets.values().chain(&p.indices)).flatten();
     let used: BTreeSet<usize> = accessors.flat_map(Accessor::views).map(|v| v.buffer).collect();
+    out.buffers = buffers(root, &used, bin, limits)?;
+    Ok(out)
+}
+
+/// Where the bytes of buffers are.
+pub(super) fn buffers(
+    root: &Node<'_>,
+    used: &BTreeSet<usize>,
+    bin: Option<&[u8]>,
+    limits: &Limits,
+) -> Result<BTreeMap<usize, Source>, Fault> {
+    let mut out = BTreeMap::new();
     let Some(buffers) = root.get("buffers")? else { return Ok(out) };
-    for index in used {
+    for &index in used {
         let Some(buffer) = buffers.item(index)? else { continue };
         let source = match (buffer.get("uri")?, bin) {
             (Some(uri), _) => at_uri(&uri, None, limits)?,
             (None, Some(bin)) if index == 0 => Source::Embedded(bin.to_vec()),
             (None, _) => Source::Missing(format!("buffers[{index}] has no bytes")),
         };
-        out.buffers.insert(index, source);
+        out.insert(index, source);
     }
     Ok(out)
 }
@@ -270,7 +294,8 @@ fn primitive(root: &Node<'_>, node: &Node<'_>, sets: &BTreeSet<u64>) -> Result<P
         };
         found.insert(*set, coordinates);
     }
-    let indices = node.get("indices")?.map(|i| accessor(root, &i, true).map_err(|fault| fault.to_string()));
+    let indices =
+        node.get("indices")?.map(|i| accessor(root, &i, Elements::Index).map_err(|fault| fault.to_string()));
     let mode = node.get("mode")?.map_or(Ok(4), |mode| mode.whole())?;
     Ok(Primitive { at, mode, sets: found, indices, draco: draco.transpose()?.unwrap_or(false) })
 }
@@ -278,7 +303,7 @@ fn primitive(root: &Node<'_>, node: &Node<'_>, sets: &BTreeSet<u64>) -> Result<P
 fn coordinates(root: &Node<'_>, primitive: &Node<'_>, key: &str) -> Result<Accessor, Fault> {
     let attributes = primitive.need("attributes", "an object of accessors")?;
     let index = attributes.need(key, "an accessor, since a texture of the material is read by it")?;
-    accessor(root, &index, false)
+    accessor(root, &index, Elements::Pair)
 }
 
 /// Do morph targets change an attribute?
@@ -292,24 +317,28 @@ fn moved(primitive: &Node<'_>, key: &str) -> Result<bool, Fault> {
     Ok(false)
 }
 
-/// An accessor of indices, or of texture coordinates.
-fn accessor(root: &Node<'_>, index: &Node<'_>, indices: bool) -> Result<Accessor, Fault> {
+/// An accessor of some elements.
+pub(super) fn accessor(root: &Node<'_>, index: &Node<'_>, elements: Elements) -> Result<Accessor, Fault> {
     let list = root.need("accessors", "an array of accessors")?;
     let index = index.index("accessors", list.len()?)?;
     let Some(node) = list.item(index)? else {
         return Err(Fault::Missing { at: list.path(), expected: "an accessor" });
     };
     let kind = node.need("type", "the type of an element")?;
-    let [wanted, expected] = if indices { ["SCALAR"; 2] } else { ["VEC2"; 2] };
-    if kind.text()? != wanted {
+    let (expected, numbers) = match elements {
+        Elements::Index => ("SCALAR", 1),
+        Elements::Pair => ("VEC2", 2),
+        Elements::Vector => ("VEC3", 3),
+    };
+    if kind.text()? != expected {
         let got = format!("\"{}\"", crate::math::shown::show(kind.text()?));
         return Err(Fault::Type { at: kind.path(), got, expected });
     }
     let component = node.need("componentType", "a component type")?;
     Ok(Accessor {
         count: node.need("count", "the number of elements")?.whole()?,
-        numbers: if indices { 1 } else { 2 },
-        component: Component::read(&component, indices)?,
+        numbers,
+        component: Component::read(&component, elements)?,
         normalized: node.get("normalized")?.map_or(Ok(false), |flag| flag.flag())?,
         view: node.get("bufferView")?.map(|v| view(root, &v)).transpose()?,
         offset: node.whole_or_zero("byteOffset")?,
@@ -324,7 +353,7 @@ fn sparse(root: &Node<'_>, node: &Node<'_>) -> Result<Sparse, Fault> {
         Ok((bytes, part.whole_or_zero("byteOffset")?))
     };
     let indices = node.need("indices", "bytes of a sparse accessor")?;
-    let component = Component::read(&indices.need("componentType", "a component type")?, true)?;
+    let component = Component::read(&indices.need("componentType", "a component type")?, Elements::Index)?;
     let (bytes, offset) = part("indices")?;
     Ok(Sparse {
         count: node.need("count", "the number of elements")?.whole()?,
@@ -357,7 +386,7 @@ fn view(root: &Node<'_>, index: &Node<'_>) -> Result<View, Fault> {
 
 impl Accessor {
     /// The buffer views that it reads.
-    fn views(&self) -> impl Iterator<Item = &View> {
+    pub(super) fn views(&self) -> impl Iterator<Item = &View> {
         let sparse = self.sparse.iter().flat_map(|s| [&s.indices.0, &s.values.0]);
         self.view.iter().chain(sparse)
     }

@@ -32,6 +32,7 @@ mod image;
 mod json;
 mod maps;
 mod material;
+mod mesh;
 mod needs;
 mod parse;
 mod reader;
@@ -59,6 +60,7 @@ pub use image::{Image, Look, Source};
 pub use json::{ASYMMETRY, Allowed, IOR, NOT_NEGATIVE, UNIT};
 pub use maps::{MapTexture, Maps};
 pub use material::{CORE, Material, MaterialExtension, State};
+pub use mesh::{Meshes, Shape};
 pub use needs::{AskedBy, Id, LeftOut, LeftOutKind, MOST_VALUES, MaterialRef, Need, Needs, Range};
 pub use reader::Reader;
 pub use uri::{Checked, LONGEST_URI, Resolved, UriError, check_uri, resolve, resolve_uri};
@@ -81,6 +83,8 @@ pub struct Limits {
     pub maps: bool,
     /// Keep in [`Scene::geometry`] where the texture coordinates lie, so that it can be told which texels the meshes cover. Default false.
     pub texels: bool,
+    /// Keep in [`Scene::drawn`] the meshes as nodes place them. Default false.
+    pub meshes: bool,
 }
 
 impl Default for Limits {
@@ -94,6 +98,7 @@ impl Default for Limits {
             colours: false,
             maps: false,
             texels: false,
+            meshes: false,
         }
     }
 }
@@ -179,6 +184,8 @@ pub struct Scene {
     pub images: Vec<Image>,
     /// Where texture coordinates lie, if [`Limits::texels`] asked for it.
     pub geometry: Geometry,
+    /// The meshes as they stand, if [`Limits::meshes`] asked for it.
+    pub drawn: Meshes,
     /// What is odd about the file.
     pub warnings: Vec<Warning>,
 }
@@ -264,7 +271,7 @@ fn read_bytes_of(bytes: &[u8], name: &str, limits: &Limits) -> Result<Scene, Fau
         Some(_) => return Err(Fault::NotGltf { got: first_bytes(text) }),
     }
     let text = std::str::from_utf8(text).map_err(|e| Fault::Utf8 { offset: e.valid_up_to() })?;
-    let tree = parse::parse(text, limits.json_values, limits.texels)?;
+    let tree = parse::parse(text, limits.json_values, [limits.texels || limits.meshes, limits.meshes])?;
     let mut scene = document::scene(&tree, bin.as_deref(), limits)?;
     name.clone_into(&mut scene.file_name);
     scene.warnings.splice(0..0, warnings);

@@ -53,9 +53,21 @@ const SKIPPED: &[&[&str]] = &[
 const GEOMETRY: &[&[&str]] =
     &[&["accessors"], &["bufferViews", "*", "extensions"], &["meshes", "*", "primitives", "*", "targets"]];
 
-/// Reads a document of at most `max_values` kept values, with what says where geometry lies if that is asked.
-pub(super) fn parse(text: &str, max_values: usize, geometry: bool) -> Result<Value, Fault> {
-    let state = State { max_values, geometry, left: Cell::new(max_values), ..State::default() };
+/// What is kept besides, where meshes are shaded.
+const PLACES: &[&[&str]] = &[
+    &["scene"],
+    &["scenes"],
+    &["meshes", "*", "primitives", "*", "extensions"],
+    &["nodes", "*", "children"],
+    &["nodes", "*", "matrix"],
+    &["nodes", "*", "rotation"],
+    &["nodes", "*", "scale"],
+    &["nodes", "*", "translation"],
+];
+
+/// Reads a document of at most `max_values` kept values, with what says where geometry lies, and how nodes place it, if that is asked.
+pub(super) fn parse(text: &str, max_values: usize, [geometry, places]: [bool; 2]) -> Result<Value, Fault> {
+    let state = State { max_values, geometry, places, left: Cell::new(max_values), ..State::default() };
     let mut reader = serde_json::Deserializer::from_str(text);
     let parsed = Seed(&state).deserialize(&mut reader).and_then(|value| reader.end().map(|()| value));
     parsed.map_err(|error| state.fault.take().unwrap_or_else(|| state.syntax(&error)))
@@ -74,6 +86,7 @@ struct State {
     path: RefCell<Vec<Owned>>,
     max_values: usize,
     geometry: bool,
+    places: bool,
     left: Cell<usize>,
     fault: RefCell<Option<Fault>>,
 }
@@ -121,7 +134,7 @@ impl State {
             rule.len() == path.len()
                 && rule.iter().enumerate().all(|(i, want)| *want == "*" || *want == key(i))
         };
-        if self.geometry && GEOMETRY.iter().any(&is) {
+        if self.geometry && GEOMETRY.iter().any(&is) || self.places && PLACES.iter().any(&is) {
             return false;
         }
         if path.len() == 1 {

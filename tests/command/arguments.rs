@@ -149,7 +149,12 @@ const MODES: &[(&str, &[&str], &[&str])] = &[
     ),
     ("verify", &["--engine=osl"], &["table", "json", "quiet"]),
     ("verify", &["--hashes"], &["strict", "json", "quiet"]),
-    ("preview", &["--scene=x"], &["engine", "furnace", "panel", "size", "out", "terminal", "json"]),
+    ("preview", &["--scene=x"], &["mesh", "engine", "furnace", "panel", "size", "out", "terminal", "json"]),
+    (
+        "preview",
+        &["--scene=x", "--mesh"],
+        &["turn", "engine", "furnace", "panel", "size", "out", "terminal", "json"],
+    ),
     ("fit", &["--recipe=x"], &["table", "form", "degree", "error", "lang"]),
     ("man", &["--out=x"], &[]),
     (

@@ -218,3 +218,80 @@ fn what_is_no_bake_is_refused() {
     assert_eq!(code(&o), 0, "{}", err(&o));
     assert!(page(&target).contains("is not the name of a file in the folder"));
 }
+
+/// A table and a map of bumps, whose lobes are far from what they stand for.
+const BOTH: &str = r#"
+name = "both"
+[[table]]
+kind = "dfg"
+name = "split"
+tolerance = 1e-3
+outputs = ["exr:half"]
+[[table.axis]]
+id = "mu"
+length = 4
+[[table.axis]]
+id = "roughness"
+domain = [0.2, 1]
+length = 4
+[[map]]
+name = "bumps"
+normal = "NORMAL"
+roughness = 0.3
+normals = "fit"
+outputs = ["CONTAINER"]
+"#;
+
+#[test]
+fn maps_are_shown_with_their_errors_and_worst_texels() {
+    let dir = folder();
+    let normal = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/bumps/normal.png");
+    let mut said = Vec::new();
+    for (name, container) in [("ktx2", "ktx2"), ("dds", "dds"), ("png", "png"), ("exr", "exr")] {
+        let recipe = BOTH.replace("NORMAL", text(&normal)).replace("CONTAINER", container);
+        let recipe = write(dir.path(), "recipe.toml", &recipe);
+        let target = dir.path().join(name);
+        bake(&recipe, &target, &["--report"]);
+        let of_bake = page(&target);
+        let o = brdfbake(&["report", text(&target), "-q"]);
+        assert_eq!(code(&o), 0, "{}", err(&o));
+        // the same section from the files alone
+        let section = |page: &str| page[page.find("<h2>bumps</h2>").unwrap()..].to_owned();
+        assert_eq!(section(&of_bake), section(&page(&target)), "{name}");
+        let manifest: serde_json::Value =
+            serde_json::from_slice(&fs::read(target.join("manifest.json")).unwrap()).unwrap();
+        let worst = &manifest["maps"][0]["worst"][0];
+        let told = format!("at level {}, texel ({}, {}): D = ", worst["level"], worst["x"], worst["y"]);
+        assert!(of_bake.contains(&told), "{told}");
+        assert!(
+            of_bake.contains("alt=\"error: distance, level 0")
+                || of_bake.contains("error: distance: 0 everywhere")
+        );
+        let level = format!("alt=\"error: distance, level {}: from ", worst["level"]);
+        // of EXR the first level is read, and the page says so
+        assert_eq!(of_bake.contains(&level), name != "exr", "{name}");
+        assert_eq!(of_bake.contains("only its largest level is read"), name == "exr", "{name}");
+        said.push(of_bake.split(&told).nth(1).unwrap()[..6].to_owned());
+    }
+    // whatever the container
+    assert!(said.iter().all(|s| *s == said[0]), "{said:?}");
+}
+
+#[test]
+fn error_against_evaluations_is_drawn_and_against_time_only_if_asked() {
+    let dir = folder();
+    let recipe = write(dir.path(), "recipe.toml", RECIPE);
+    let target = dir.path().join("out");
+    bake(&recipe, &target, &["--report"]);
+    let plain = page(&target);
+    assert!(plain.contains("error against evaluations; curves: this baker, to a tolerance;"));
+    assert!(plain.contains("Error against evaluations is not drawn: "), "that of a Fresnel factor");
+    assert!(!plain.contains("error against time"));
+    let o = brdfbake(&["report", text(&target), "--timings", "-q"]);
+    assert_eq!(code(&o), 0, "{}", err(&o));
+    assert!(
+        page(&target).contains("error against time; curves:") && page(&target).contains("<h2>Timings</h2>")
+    );
+    let o = brdfbake(&["report", text(&target), "--timings", "--evaluations", "0"]);
+    assert_eq!(code(&o), 2, "{}", err(&o));
+}

@@ -1,12 +1,23 @@
 //! The readers of the library, each with the files that it knows.
 
+use super::repository;
 use crate::sample;
 use brdfbake::cancel::Cancel;
+use brdfbake::cli::{self, Cli};
 use brdfbake::encode::{ENCODERS, beside, read};
 use brdfbake::picture;
+use brdfbake::pipeline::audit::audit;
+use brdfbake::pipeline::golden::Golden;
+use brdfbake::pipeline::pages::{self, Asked};
+use brdfbake::pipeline::recheck::Beside;
+use brdfbake::plan::scene::Pictures;
+use brdfbake::plan::{Output, map};
 use brdfbake::recipe::{self, ENGINES, PRESETS};
 use brdfbake::scene::{self, Limits, write::Parts};
-use std::path::Path;
+use clap::Parser;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, LazyLock};
+use tempfile::TempDir;
 
 /// What reads a file from outside.
 pub(super) struct Reader {
@@ -28,7 +39,101 @@ pub(super) static READERS: &[Reader] = &[
         covers: &["encode/open.rs read_bytes"],
         seeds: containers,
         words: &["dataWindow", "chlist", "IHDR", "zTXt", "KTX2", "DX10", "descr", "shape"],
-        read: |bytes| read::read_bytes(bytes).is_ok(),
+        read: |bytes| {
+            // levels of pyramids too: the last one that may be there, and one beyond
+            let level = |k| read::read_level_until(&Cancel::new(), bytes, k).is_ok();
+            let levels = [1, 3].map(level);
+            read::read_bytes(bytes).is_ok() || levels.contains(&true)
+        },
+    },
+    Reader {
+        id: "rows",
+        covers: &[],
+        seeds: || {
+            let rows = "model,params_json,wi_theta,wi_phi,wo_theta,wo_phi\nggx,\"{\"\"alpha\"\": 0.3}\",0.5,0,0.4,1\nlambert,,1,0,1,\n";
+            let function = "model,params_json,wi_theta,wi_phi,wo_theta,wo_phi,value\nfresnel-dielectric,\"{\"\"eta\"\": 1.5}\",0.1,,,,7\n";
+            vec![rows.into(), function.into()]
+        },
+        words: &[
+            "model",
+            "params_json",
+            "wi_theta",
+            "ggx",
+            "ggx-glass",
+            "gltf",
+            "\"{\"\"alpha\"\": ",
+            ",,,,",
+            "\n",
+            "alpha_x",
+        ],
+        read: |bytes| {
+            let (from, to) = (SCRATCH.file("rows.csv", bytes), SCRATCH.path("rows-out.csv"));
+            let words = ["brdfbake", "eval", from.to_str().unwrap(), "-o", to.to_str().unwrap()];
+            cli::run(Cli::try_parse_from(words).unwrap(), &Arc::new(Cancel::new())).is_ok()
+        },
+    },
+    Reader {
+        id: "golden",
+        covers: &["pipeline/golden.rs load"],
+        seeds: || {
+            let all = "recipe = \"r.toml\"\nulps = 1\nabsolute = 1e-6\n[channel.\"dfg.scale\"]\nulps = 2\nabsolute = 0\n";
+            vec![all.into(), b"ulps = 0.5\n".to_vec(), Vec::new()]
+        },
+        words: &["recipe", "ulps", "absolute", "[channel.x]\n", " = ", "1e400", "-0.0"],
+        read: |bytes| {
+            SCRATCH.file("golden.toml", bytes);
+            Golden::load(SCRATCH.folder()).is_ok()
+        },
+    },
+    Reader {
+        id: "manifests",
+        covers: &["pipeline/audit.rs audit", "pipeline/recheck/file.rs load"],
+        seeds: || {
+            let examples = ["01-split-sum", "02-energy-compensation", "08-maps", "16-sbrdf"];
+            let path = |e: &str| format!("out-examples/{e}/manifest.json");
+            examples.iter().map(|e| std::fs::read(repository().join(path(e))).unwrap()).collect()
+        },
+        words: &[
+            "\"schema\"",
+            "\"tables\"",
+            "\"maps\"",
+            "\"files\"",
+            "\"file\"",
+            "\"axes\"",
+            "\"len\": ",
+            "\"../x\"",
+            "\"level\": 9,",
+            "[[",
+            "]]",
+        ],
+        read: |bytes| {
+            SCRATCH.file("manifest.json", bytes);
+            let folder = SCRATCH.folder();
+            let asked = Asked { against: None, evaluations: 0, timings: false };
+            let pages = pages::of_folder(folder, &asked, &Cancel::new()).is_ok();
+            let _ = Beside::load(folder);
+            audit(folder).is_ok() && pages
+        },
+    },
+    Reader {
+        id: "words",
+        covers: &["plan/output.rs parse", "plan/map/output.rs parse", "encode/layout.rs parse"],
+        seeds: || {
+            let words =
+                ["exr:half+positional", "ktx2:roughness=bc4+normal=bc5", "128x64x2:half", "png:unorm16+rgb"];
+            words.iter().map(|w| w.as_bytes().to_vec()).collect()
+        },
+        words: &["exr", "ktx2", ":", "+", "=", "x", "half", "bc6h", "roughness"],
+        read: |bytes| {
+            let text = String::from_utf8_lossy(bytes);
+            let _ = brdfbake::math::shown::show(&text);
+            let parsed = [
+                Output::parse(&text).is_ok(),
+                map::Output::parse(&text).is_ok(),
+                brdfbake::encode::layout::Layout::parse(&text).is_ok(),
+            ];
+            parsed.contains(&true)
+        },
     },
     Reader {
         id: "bare",
@@ -82,7 +187,11 @@ pub(super) static READERS: &[Reader] = &[
     },
     Reader {
         id: "scenes",
-        covers: &["scene/mod.rs read_slice", "scene/write/glb.rs open"],
+        covers: &[
+            "scene/mod.rs read_slice",
+            "scene/write/glb.rs open",
+            "scene/write/references.rs references",
+        ],
         seeds: || files(&["tests/scenes", "tests/scenes/bumps", "tests/scenes/spec_gloss"], &["gltf", "glb"]),
         words: &[
             "KHR_materials_sheen",
@@ -97,10 +206,38 @@ pub(super) static READERS: &[Reader] = &[
         ],
         read: |bytes| {
             let parts = Parts::open(bytes).is_ok();
-            scene::read_slice(bytes, "fuzz.glb", &Limits::default()).is_ok() && parts
+            let limits = Limits { texels: true, meshes: true, colours: true, ..Limits::default() };
+            let drawn = scene::read_slice(bytes, "fuzz.glb", &limits).map(|scene| {
+                // buffers beside it are looked for in the folder of the tests
+                let folder = repository().join("tests/scenes/bumps");
+                Pictures::new(None, 1 << 16).triangles(&scene, &folder).0.len()
+            });
+            let _ = scene::write::references(&String::from_utf8_lossy(bytes));
+            scene::read_slice(bytes, "fuzz.glb", &Limits::default()).is_ok() && parts && drawn.is_ok()
         },
     },
 ];
+
+/// A folder for readers that take one, or a file of it.
+struct Scratch(LazyLock<TempDir>);
+
+static SCRATCH: Scratch = Scratch(LazyLock::new(|| tempfile::tempdir().unwrap()));
+
+impl Scratch {
+    fn folder(&self) -> &Path {
+        self.0.path()
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder().join(name)
+    }
+
+    /// Writes a file into it.
+    fn file(&self, name: &str, bytes: &[u8]) -> PathBuf {
+        std::fs::write(self.path(name), bytes).unwrap();
+        self.path(name)
+    }
+}
 
 /// A file of every container that is read, and storage.
 fn containers() -> Vec<Vec<u8>> {
@@ -113,6 +250,9 @@ fn containers() -> Vec<Vec<u8>> {
             seeds.push(sample::file(*encoder, &table, *storage, &p));
         }
     }
+    // the head of a binary of the MERL database
+    seeds.push([90u32, 90, 180].iter().flat_map(|n| n.to_le_bytes()).collect());
+    seeds.extend(files(&["out-examples/08-maps"], &["ktx2"]));
     seeds
 }
 

@@ -1,7 +1,8 @@
-// The scene of `brdfbake preview` in three.js: a sphere of radius 1, seen without perspective from +z, under the built-in sky or a
-// furnace, with or without the panel. The sky and the panel are those of src/pipeline/preview/environment.rs.
+// The scene of `brdfbake preview` in three.js: a sphere of radius 1, or a mesh inside it, seen without perspective from +z, under the
+// built-in sky or a furnace, with or without the panel. The sky and the panel are those of src/pipeline/preview/environment.rs.
 
 import * as THREE from 'three';
+import { GLTFLoader } from './three/examples/jsm/loaders/GLTFLoader.js';
 import { RectAreaLightUniformsLib } from './three/examples/jsm/lights/RectAreaLightUniformsLib.js';
 
 const renderer = new THREE.WebGLRenderer({ antialias: false });
@@ -26,37 +27,61 @@ function environment(furnace) {
     return new THREE.PMREMGenerator(renderer).fromScene(scene).texture;
 }
 
-/** Linear red, green, blue and coverage of every pixel, rows from the top, of each sphere. */
-window.spheres = ({ size, surfaces, furnace, panel }) => {
-    const texture = environment(furnace);
+/** Linear red, green, blue and coverage of every pixel, rows from the top, of a picture of an object in [-1, 1]. */
+function picture(object, { size, texture, panel }) {
     const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 10);
     camera.position.z = 5;
+    const target = new THREE.WebGLRenderTarget(size, size, { type: THREE.FloatType });
+    const scene = new THREE.Scene();
+    scene.environment = texture;
+    scene.add(object);
+    if (panel) {
+        const light = new THREE.RectAreaLight(0xffffff, 1, 2.4, 1.6);
+        light.color.setRGB(1.5, 1.4, 1.2, THREE.LinearSRGBColorSpace);
+        light.position.set(-2, 1.6, 2.4);
+        light.lookAt(0, 0, 0);
+        scene.add(light);
+    }
+    renderer.setRenderTarget(target);
+    renderer.setClearColor(0, 0);
+    renderer.clear();
+    renderer.render(scene, camera);
+    const all = new Float32Array(4 * size * size);
+    renderer.readRenderTargetPixels(target, 0, 0, size, size, all);
+    renderer.setRenderTarget(null);
+    target.dispose();
+    const rows = Array.from({ length: size }, (_, y) => Array.from(all.subarray(4 * size * (size - 1 - y), 4 * size * (size - y))));
+    return rows.flat();
+}
+
+/** A picture of each sphere. */
+window.spheres = ({ size, surfaces, furnace, panel }) => {
+    const texture = environment(furnace);
     const geometry = new THREE.IcosahedronGeometry(1, 63).toNonIndexed();
     geometry.computeVertexNormals();
-    const target = new THREE.WebGLRenderTarget(size, size, { type: THREE.FloatType });
     return surfaces.map(({ base, metallic, roughness }) => {
-        const scene = new THREE.Scene();
-        scene.environment = texture;
         const material = new THREE.MeshStandardMaterial({ metalness: metallic, roughness });
         material.color.setRGB(...base, THREE.LinearSRGBColorSpace);
-        scene.add(new THREE.Mesh(geometry, material));
-        if (panel) {
-            const light = new THREE.RectAreaLight(0xffffff, 1, 2.4, 1.6);
-            light.color.setRGB(1.5, 1.4, 1.2, THREE.LinearSRGBColorSpace);
-            light.position.set(-2, 1.6, 2.4);
-            light.lookAt(0, 0, 0);
-            scene.add(light);
-        }
-        renderer.setRenderTarget(target);
-        renderer.setClearColor(0, 0);
-        renderer.clear();
-        renderer.render(scene, camera);
-        const all = new Float32Array(4 * size * size);
-        renderer.readRenderTargetPixels(target, 0, 0, size, size, all);
-        renderer.setRenderTarget(null);
-        const rows = Array.from({ length: size }, (_, y) => Array.from(all.subarray(4 * size * (size - 1 - y), 4 * size * (size - y))));
-        return rows.flat();
+        return picture(new THREE.Mesh(geometry, material), { size, texture, panel });
     });
+};
+
+/** A picture of the meshes of a glTF file, moved and shrunk into the unit sphere as `preview --mesh` does. */
+window.mesh = async ({ size, url, panel }) => {
+    const { scene } = await new GLTFLoader().loadAsync(url);
+    scene.updateMatrixWorld(true);
+    const points = [];
+    scene.traverse((node) => {
+        const position = node.geometry?.attributes.position;
+        for (let i = 0; i < (position?.count ?? 0); i++) points.push(new THREE.Vector3().fromBufferAttribute(position, i).applyMatrix4(node.matrixWorld));
+    });
+    const middle = new THREE.Box3().setFromPoints(points).getCenter(new THREE.Vector3());
+    const radius = Math.max(...points.map((p) => p.distanceTo(middle)));
+    const group = new THREE.Group();
+    group.add(scene);
+    group.scale.setScalar(1 / radius);
+    group.position.copy(middle).multiplyScalar(-1 / radius);
+    return picture(group, { size, texture: environment(false), panel });
 };
 
 /** The pixels of a PNG: width, height, RGBA. */

@@ -1,6 +1,8 @@
 // `brdfbake preview --engine three` beside three.js itself, in a browser, with the baked tables in place of the shipped ones.
 //
-//     NODE_PACKAGES=... node tests/three/preview.mjs --brdfbake target/release/brdfbake [--without-panel]
+//     NODE_PACKAGES=... node tests/three/preview.mjs --brdfbake target/release/brdfbake [--short]
+//
+// --short: smaller pictures, and the panel on metal alone.
 //
 // Both are turned to 8-bit sRGB without tone mapping and compared where the sphere covers the whole pixel. Exit code: 0 if the RMSE of
 // every sphere is at most 2 of 255, 1 if not, 77 skipped.
@@ -13,7 +15,8 @@ import { fileURLToPath } from 'node:url';
 import { packageFolder, withBrowser } from './browser.mjs';
 
 const BOUND = 2;
-const SIZE = 128;
+const short = process.argv.includes('--short');
+const SIZE = short ? 48 : 128;
 const here = dirname(fileURLToPath(import.meta.url));
 const at = process.argv.indexOf('--brdfbake');
 const brdfbake = resolve(at < 0 ? 'target/release/brdfbake' : process.argv[at + 1]);
@@ -26,12 +29,18 @@ const CASES = [
     { name: 'white metal in a furnace', base: [1, 1, 1], metallic: 1, furnace: true },
     { name: 'gold under the panel', base: [1, 0.77, 0.34], metallic: 1, panel: true },
     { name: 'plastic under the panel', base: [0.2, 0.4, 0.6], metallic: 0, panel: true },
-].filter((c) => !c.panel || !process.argv.includes('--without-panel'));
+].filter((c) => !c.panel || !short || c.metallic === 1);
+const MESHES = [{ name: 'mesh' }, { name: 'mesh under the panel', panel: true }];
 
 execFileSync(brdfbake, ['bake', '--engine', 'three', '-o', temporary, '--quiet'], { stdio: 'inherit' });
 CASES.forEach((c, n) => {
     const options = ['--engine', 'three', '--base', c.base.join(','), '--metallic', c.metallic, '--roughness', roughness.join(','), '--size', SIZE];
     execFileSync(brdfbake, ['preview', ...options, ...(c.furnace ? ['--furnace'] : []), ...(c.panel ? ['--panel'] : []), '-o', join(temporary, `${n}.png`)], { stdio: 'ignore' });
+});
+
+MESHES.forEach((m, n) => {
+    const options = ['--engine', 'three', '--scene', join(here, '../scenes/knot/knot.gltf'), '--mesh', '--size', SIZE];
+    execFileSync(brdfbake, ['preview', ...options, ...(m.panel ? ['--panel'] : []), '-o', join(temporary, `${CASES.length + n}.png`)], { stdio: 'ignore' });
 });
 
 const REPLACED = { 'src/renderers/shaders/DFGLUTData.js': 'DFGLUTData.js', 'examples/jsm/lights/RectAreaLightTexturesLib.js': 'RectAreaLightTexturesLib.js' };
@@ -40,6 +49,7 @@ function find(path) {
     const rest = path.slice(1);
     if (rest.includes('..')) return undefined;
     if (/^\d+\.png$/.test(rest)) return join(temporary, rest);
+    if (/^knot\.(gltf|bin)$/.test(rest)) return join(here, '../scenes/knot', rest);
     if (!rest.startsWith('three/')) return join(here, rest);
     const baked = REPLACED[rest.slice(6)];
     if (baked) served.add(baked);
@@ -68,6 +78,23 @@ function compare(rendered, { width, data }, sphere) {
     return { rmse: Math.sqrt(sum / n), largest };
 }
 
+/** The same of a mesh, over the pixels that are covered as all of their neighbours are. */
+function compareMesh(rendered, { data }) {
+    let [sum, n, largest] = [0, 0, 0];
+    const covered = (x, y) => x >= 0 && y >= 0 && x < SIZE && y < SIZE && rendered[4 * (y * SIZE + x) + 3] === 1;
+    for (let y = 0; y < SIZE; y++) {
+        for (let x = 0; x < SIZE; x++) {
+            if (![-1, 0, 1].every((dy) => [-1, 0, 1].every((dx) => covered(x + dx, y + dy)))) continue;
+            const [a, b] = [4 * (y * SIZE + x), 4 * ((SIZE + y) * SIZE + x)];
+            for (let c = 0; c < 3; c++) {
+                const d = srgb(rendered[a + c]) - data[b + c];
+                [sum, n, largest] = [sum + d * d, n + 1, Math.max(largest, Math.abs(d))];
+            }
+        }
+    }
+    return { rmse: Math.sqrt(sum / n), largest, pixels: n / 3 };
+}
+
 const worst = await withBrowser(find, async (open, version) => {
     const page = await open('/preview.html');
     let worst = 0;
@@ -78,6 +105,14 @@ const worst = await withBrowser(find, async (open, version) => {
         const found = rendered.map((r, i) => compare(r, picture, i));
         worst = Math.max(worst, ...found.map((f) => f.rmse));
         console.log(`${c.name}: RMSE ${found.map((f) => f.rmse.toFixed(2)).join(', ')} of 255 at roughness ${roughness.join(', ')}; largest ${Math.max(...found.map((f) => f.largest))}`);
+    }
+    for (const [n, m] of MESHES.entries()) {
+        const rendered = await page.evaluate((o) => window.mesh(o), { size: SIZE, url: '/knot.gltf', panel: m.panel });
+        const picture = await page.evaluate((url) => window.pixels(url), `/${CASES.length + n}.png`);
+        const found = compareMesh(rendered, picture);
+        if (found.pixels < SIZE) throw new Error(`${found.pixels} pixels of the mesh are compared`);
+        worst = Math.max(worst, found.rmse);
+        console.log(`${m.name}: RMSE ${found.rmse.toFixed(2)} of 255 over ${found.pixels} pixels; largest ${found.largest}`);
     }
     console.log(`largest RMSE ${worst.toFixed(2)} of 255, ${version}`);
     return worst;

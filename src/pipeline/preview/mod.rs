@@ -1,4 +1,4 @@
-//! Spheres under a small sky and a panel of light: once integrated, once as a shader shades them with baked tables.
+//! Spheres, or a mesh, under a small sky and a panel of light: once integrated, once as a shader shades them with baked tables.
 //!
 //! Both are the same shading model, that of three.js: the metallic-roughness material of glTF with GGX, single scattering, plus the
 //! light that scatters on between the facets (Fdez-Aguera 2019), whose share is `F_ms E_ms` of the mean irradiance. They differ in how
@@ -6,15 +6,17 @@
 //! tables done and all else as in the shader: what it differs from the second by is the table alone.
 
 mod environment;
+mod mesh;
 mod picture;
 mod shader;
 mod tables;
 mod truth;
 
 pub use environment::{Bands, Panel, Sky};
+pub use mesh::Mesh;
 pub use picture::{exr, png};
 pub use shader::{Style, Tables};
-pub use tables::{PreviewError, materials, tables_of};
+pub use tables::{PreviewError, materials, mesh, tables_of};
 
 use crate::cancel::{Cancel, Cancelled};
 use crate::grid::axis::count;
@@ -28,9 +30,9 @@ use truth::Truth;
 /// Mean of the Schlick factor over the hemisphere, 1/21, as three.js has it.
 const MEAN_SCHLICK: f64 = 0.047619;
 /// Drawn directions of a preview at most, for the panel.
-const DRAWS: usize = 1 << 26;
+const DRAWS: usize = 1 << 25;
 
-/// A sphere of one material.
+/// A material: a sphere, or parts of a mesh.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Surface {
     /// What it is called.
@@ -48,35 +50,73 @@ pub struct Surface {
 /// What is to be seen.
 #[derive(Debug, Clone)]
 pub struct Scene {
-    /// Spheres, from the left.
+    /// Spheres, from the left; or the materials of the mesh.
     pub surfaces: Vec<Surface>,
+    /// What is shaded in place of spheres.
+    pub mesh: Option<Mesh>,
     /// The sky.
     pub sky: Sky,
     /// The panel, if there is one.
     pub panel: Option<Panel>,
-    /// Diameter of a sphere in pixels.
+    /// Diameter of a sphere in pixels; side of the picture of a mesh.
     pub size: usize,
+}
+
+/// What is seen at a pixel.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Hit {
+    /// Number of the surface.
+    surface: usize,
+    /// Where, inside the unit sphere.
+    at: DVec3,
+    /// Its normal.
+    normal: DVec3,
+}
+
+impl Scene {
+    /// Pixels of a row.
+    fn width(&self) -> usize {
+        if self.mesh.is_some() { self.size } else { self.surfaces.len() * self.size }
+    }
+
+    /// What is seen at each pixel, rows from the top.
+    fn hits(&self) -> Vec<Option<Hit>> {
+        if let Some(mesh) = &self.mesh {
+            return mesh.hits(self.size);
+        }
+        let (width, radius) = (self.width(), 0.5 * count(self.size));
+        let sphere = |i: usize| {
+            let surface = i % width / self.size;
+            let [x, y] = [i % width % self.size, i / width].map(|v| (count(v) + 0.5) / radius - 1.0);
+            let z2 = 1.0 - x * x - y * y;
+            let normal = (z2 > 0.0).then(|| DVec3::new(x, -y, z2.sqrt()))?;
+            Some(Hit { surface, at: normal, normal })
+        };
+        (0..width * self.size).map(sphere).collect()
+    }
 }
 
 /// Rows of pixels from the top, the spheres beside each other; linear red, green, blue, NaN outside.
 #[derive(Debug, Clone)]
 pub struct Preview {
-    /// Diameter of a sphere.
+    /// Rows of the picture.
     pub size: usize,
     /// By integration.
     pub integrated: Vec<[f64; 3]>,
     /// By the tables.
     pub read: Vec<[f64; 3]>,
-    /// Each sphere in numbers.
+    /// Each sphere, or each material of the mesh, in numbers.
     pub spheres: Vec<Numbers>,
 }
 
 /// How far the two are apart.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Numbers {
-    /// The sphere.
+    /// The sphere, or the material.
     #[serde(flatten)]
     pub surface: Surface,
+    /// Pixels where it is seen.
+    pub pixels: usize,
     /// Root of the mean square over pixels and colours, in codes of 8-bit sRGB (of 255).
     pub rmse_codes: f64,
     /// The largest, linear.
@@ -92,7 +132,7 @@ pub struct Numbers {
 /// A pixel: integrated, read, read with exact integrals in place of the table, and what the first may be off by.
 type Pixel = ([f64; 3], [f64; 3], [f64; 3], f64);
 
-/// Shades the spheres.
+/// Shades the spheres, or the mesh.
 ///
 /// # Errors
 /// [`ParamError`] for a roughness that the model refuses, [`Cancelled`].
@@ -102,39 +142,52 @@ pub fn render(
     style: &Style,
     cancel: &Cancel,
 ) -> Result<Preview, PreviewError> {
-    let (n, size) = (scene.surfaces.len(), scene.size);
+    let width = scene.width();
+    let hits = scene.hits();
     let mut preview = Preview {
-        size,
-        integrated: vec![[f64::NAN; 3]; n * size * size],
-        read: vec![[f64::NAN; 3]; n * size * size],
+        size: scene.size,
+        integrated: vec![[f64::NAN; 3]; hits.len()],
+        read: vec![[f64::NAN; 3]; hits.len()],
         spheres: Vec::new(),
     };
-    let draws =
-        u32::try_from((DRAWS / (n * size * size).max(1)).next_power_of_two().clamp(64, 4096)).unwrap_or(64);
-    for (s, surface) in scene.surfaces.iter().enumerate() {
-        let shaded = Shaded::new(surface, style)?;
-        let rows: Vec<Vec<Option<Pixel>>> = (0..size)
-            .into_par_iter()
-            .map(|y| {
-                cancel.check()?;
-                Ok((0..size).map(|x| shaded.pixel(scene, tables, style, [x, y], draws)).collect())
-            })
-            .collect::<Result<_, Cancelled>>()?;
-        let mut sums = Sums::default();
-        for (y, row) in rows.iter().enumerate() {
-            for (x, pixel) in row.iter().enumerate() {
-                let Some((integrated, read, exact, error)) = pixel else { continue };
-                let at = y * n * size + s * size + x;
-                (preview.integrated[at], preview.read[at]) = (*integrated, *read);
-                sums.add(integrated, read, exact, *error);
+    let draws = u32::try_from((DRAWS / hits.len().max(1)).next_power_of_two().clamp(64, 4096)).unwrap_or(64);
+    let mut shaded = Vec::new();
+    for surface in &scene.surfaces {
+        cancel.check()?;
+        shaded.push(Shaded::new(surface, style)?);
+    }
+    // a row after the other, so that the sums are the same on any number of threads
+    let rows = hits.par_chunks(width.max(1)).zip(preview.integrated.par_chunks_mut(width.max(1)));
+    let rows = rows.zip(preview.read.par_chunks_mut(width.max(1))).enumerate();
+    let sums: Vec<Vec<Sums>> = rows
+        .map(|(y, ((hits, integrated), read))| {
+            cancel.check()?;
+            let mut sums = vec![Sums::default(); shaded.len()];
+            for (x, hit) in hits.iter().enumerate() {
+                let Some(hit) = hit else { continue };
+                let column = if scene.mesh.is_some() { x } else { x % scene.size };
+                let (of, sums) = (&shaded[hit.surface], &mut sums[hit.surface]);
+                let (a, b, exact, error) = of.pixel(scene, tables, style, hit, draws, seed([column, y]));
+                (integrated[x], read[x]) = (a, b);
+                sums.add(&a, &b, &exact, error);
             }
-        }
-        preview.spheres.push(sums.numbers(surface, shaded.truth.error));
+            Ok(sums)
+        })
+        .collect::<Result<_, Cancelled>>()?;
+    for (s, (surface, shaded)) in scene.surfaces.iter().zip(&shaded).enumerate() {
+        let mut all = Sums::default();
+        sums.iter().for_each(|row| all.join(&row[s]));
+        preview.spheres.push(all.numbers(surface, shaded.truth.error));
     }
     Ok(preview)
 }
 
-#[derive(Default)]
+/// Which directions are drawn for the panel at a pixel.
+fn seed([x, y]: [usize; 2]) -> u32 {
+    u32::try_from(x * 65_536 + y).unwrap_or(0)
+}
+
+#[derive(Debug, Clone, Copy, Default)]
 struct Sums {
     pixels: f64,
     squares: [f64; 2],
@@ -155,10 +208,21 @@ impl Sums {
         }
     }
 
+    fn join(&mut self, other: &Sums) {
+        self.pixels += other.pixels;
+        self.error += other.error;
+        for i in 0..2 {
+            self.squares[i] += other.squares[i];
+            self.largest[i] = self.largest[i].max(other.largest[i]);
+        }
+    }
+
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of pixels")]
     fn numbers(&self, surface: &Surface, moments: f64) -> Numbers {
         let rmse = |i: usize| (self.squares[i] / (3.0 * self.pixels).max(1.0)).sqrt();
         Numbers {
             surface: surface.clone(),
+            pixels: self.pixels as usize,
             rmse_codes: rmse(0),
             largest: self.largest[0],
             table_rmse_codes: rmse(1),
@@ -197,30 +261,27 @@ impl<'a> Shaded<'a> {
         scene: &Scene,
         tables: &Tables,
         style: &Style,
-        at: [usize; 2],
+        &Hit { at, normal, .. }: &Hit,
         draws: u32,
-    ) -> Option<Pixel> {
-        let radius = 0.5 * count(scene.size);
-        let [x, y] = at.map(|v| (count(v) + 0.5) / radius - 1.0);
-        let z2 = 1.0 - x * x - y * y;
-        let normal = (z2 > 0.0).then(|| DVec3::new(x, -y, z2.sqrt()))?;
+        seed: u32,
+    ) -> Pixel {
         let (view, mu) = (DVec3::Z, normal.z);
         let tangent = (view - normal * mu).try_normalize().unwrap_or(DVec3::X);
         let frame = DMat3::from_cols(tangent, normal.cross(tangent), normal);
+        let place = (at, &frame);
         let panel = scene.panel.as_ref();
-        let lookup = tables.look(style, panel, &frame, mu, self.roughness);
+        let lookup = tables.look(style, panel, place, mu, self.roughness);
         let moments = self.truth.moments(mu);
         let exact = moments.map(|m| m[0]);
         let irradiance = scene.sky.about(normal, Bands::COSINE);
         let radiance = scene.sky.about(style.direction(view, normal, self.roughness), self.bands);
         let read = |split: [f64; 2], lobe: [f64; 2]| {
             let sky = split.map(|s| radiance.map(|r| r * s));
-            let form = panel.map_or(0.0, |p| shader::diffuse(style, p, &frame));
+            let form = panel.map_or(0.0, |p| shader::diffuse(style, p, place));
             self.shade(split, &Light { sky, panel: lobe, diffuse: (irradiance, form) }, scene)
         };
-        let seed = u32::try_from(at[0] * 65_536 + at[1]).unwrap_or(0);
-        let (lobe, error) = panel.map_or(([0.0; 2], 0.0), |p| self.truth.panel(p, &frame, mu, draws, seed));
-        let form = panel.map_or(0.0, |p| shader::diffuse(&Style { three: false, ..*style }, p, &frame));
+        let (lobe, error) = panel.map_or(([0.0; 2], 0.0), |p| self.truth.panel(p, place, mu, draws, seed));
+        let form = panel.map_or(0.0, |p| shader::diffuse(&Style { three: false, ..*style }, p, place));
         let light = Light {
             sky: self.truth.sky(&scene.sky, &frame, &moments),
             panel: lobe,
@@ -228,7 +289,7 @@ impl<'a> Shaded<'a> {
         };
         let integrated = self.shade(exact, &light, scene);
         let brightest = panel.map_or(0.0, |p| p.radiance.iter().copied().fold(0.0, f64::max));
-        Some((integrated, read(lookup.split, lookup.panel), read(exact, lookup.panel), error * brightest))
+        (integrated, read(lookup.split, lookup.panel), read(exact, lookup.panel), error * brightest)
     }
 
     /// The shading model, from the integrals of the lobe and the light.

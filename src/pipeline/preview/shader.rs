@@ -106,12 +106,12 @@ fn prefiltered(roughness: f64) -> Bands {
 }
 
 impl Tables {
-    /// Reads the tables at a pixel. The frame is that of its normal, the tangent towards the view.
+    /// Reads the tables at a place with a frame: that of its normal, the tangent towards the view.
     pub(super) fn look(
         &self,
         style: &Style,
         panel: Option<&Panel>,
-        frame: &DMat3,
+        (at, frame): (DVec3, &DMat3),
         mu: f64,
         roughness: f64,
     ) -> Lookup {
@@ -126,21 +126,21 @@ impl Tables {
         read(magnitude, mu, roughness, &mut scale);
         let [m11, m31, m13, m33] = m;
         let inverse = DMat3::from_cols(DVec3::new(m11, 0.0, m31), DVec3::Y, DVec3::new(m13, 0.0, m33));
-        let local = seen(panel, frame);
+        let local = seen(panel, at, frame);
         let factor = style.clipped(&inverse, &local);
         Lookup { split, panel: [factor * (scale[0] - scale[1]), factor * scale[1]] }
     }
 }
 
-/// The corners of the panel from a point of the sphere, counter-clockwise about the normal.
-fn seen(panel: &Panel, frame: &DMat3) -> [DVec3; 4] {
-    let [a, b, c, d] = panel.corners().map(|c| frame.transpose() * (c - frame.z_axis));
+/// The corners of the panel from a point of the surface, counter-clockwise about the normal.
+fn seen(panel: &Panel, at: DVec3, frame: &DMat3) -> [DVec3; 4] {
+    let [a, b, c, d] = panel.corners().map(|c| frame.transpose() * (c - at));
     [d, c, b, a]
 }
 
 /// The form factor of the panel for a diffuse surface.
-pub(super) fn diffuse(style: &Style, panel: &Panel, frame: &DMat3) -> f64 {
-    let local = seen(panel, frame);
+pub(super) fn diffuse(style: &Style, panel: &Panel, (at, frame): (DVec3, &DMat3)) -> f64 {
+    let local = seen(panel, at, frame);
     style.clipped(&DMat3::IDENTITY, &local)
 }
 

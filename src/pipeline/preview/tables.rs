@@ -1,17 +1,17 @@
 //! The tables and the materials of a preview.
 
-use super::{Style, Surface, Tables};
+use super::{Mesh, Style, Surface, Tables};
 use crate::cancel::{Cancel, Cancelled};
 use crate::grid::Table;
 use crate::grid::axis::count;
 use crate::models::ParamError;
 use crate::pipeline::materials::MaterialTexels;
 use crate::pipeline::{InMemoryError, bake_until};
-use crate::plan::scene::{Pictures, SurveyOptions};
+use crate::plan::scene::{Pictures, SurveyOptions, Triangle};
 use crate::plan::{Plan, PlannedTable, TableRequest};
 use crate::recipe::{self, Engine};
 use crate::report::split::Split;
-use crate::scene::{Limits, SceneError, read};
+use crate::scene::{Limits, Scene, SceneError, read};
 use std::path::Path;
 
 /// Why there is no preview.
@@ -112,7 +112,7 @@ fn stored(planned: &PlannedTable, cancel: &Cancel) -> Result<Table, PreviewError
     Ok(Table { grid, channels: table.channels.clone(), values, errors: Vec::new(), evaluations: Vec::new() })
 }
 
-/// The materials of a scene as spheres: the means of their texels.
+/// The materials of a scene as spheres: the means of their texels. Beside them what is left out, and why.
 ///
 /// # Errors
 /// [`PreviewError::Scene`] for a scene that is refused, [`PreviewError::NoMaterial`] where none can be shown.
@@ -120,19 +120,53 @@ pub fn materials(path: &Path, options: &SurveyOptions) -> Result<(Vec<Surface>, 
     let scene = read(path, &Limits { colours: true, ..Limits::default() })?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let maps = Pictures::new(options.root.clone(), options.pixels);
-    let (mut surfaces, mut left_out) = (Vec::new(), Vec::new());
-    for material in scene.materials.iter().filter(|m| m.used && m.lit && !m.is_unlit()) {
-        let name = material.name.clone().unwrap_or_else(|| format!("material {}", material.index));
-        match MaterialTexels::read(material, &scene, folder, &maps) {
-            Ok(texels) => surfaces.push(mean(name, &texels)),
-            Err(why) => left_out.push(format!("{name}: {why}")),
-        }
-    }
+    let (surfaces, left_out) = surfaces(&scene, folder, &maps);
     if surfaces.is_empty() {
         let why = left_out.first().cloned().unwrap_or_else(|| "no lit material is in use".to_owned());
         return Err(PreviewError::NoMaterial { file: scene.file_name, why });
     }
-    Ok((surfaces, left_out))
+    Ok((surfaces.into_iter().map(|(_, s)| s).collect(), left_out))
+}
+
+/// The materials of a scene, as [`materials`] has them, and the triangles that they are on, turned by so many degrees round the upright
+/// axis. What stands in glTF's default material is a white metal of roughness 1.
+///
+/// # Errors
+/// As [`materials`], and where there is no triangle.
+pub fn mesh(
+    path: &Path,
+    degrees: f64,
+    options: &SurveyOptions,
+) -> Result<(Vec<Surface>, Mesh, Vec<String>), PreviewError> {
+    let scene = read(path, &Limits { colours: true, meshes: true, ..Limits::default() })?;
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let maps = Pictures::new(options.root.clone(), options.pixels);
+    let (mut known, mut left_out) = surfaces(&scene, folder, &maps);
+    let (triangles, bad) = maps.triangles(&scene, folder);
+    left_out.extend(bad);
+    if triangles.iter().any(|t| t.material.is_none()) {
+        let name = "default material".to_owned();
+        known.push((None, Surface { name, base: [1.0; 3], metallic: 1.0, roughness: 1.0, f0: 0.04 }));
+    }
+    // only what a triangle has
+    known.retain(|(index, _)| triangles.iter().any(|t| t.material == *index));
+    let place = |t: &Triangle| known.iter().position(|(index, _)| *index == t.material);
+    let drawn = triangles.into_iter().filter_map(|t| Some((t, place(&t)?))).collect();
+    let mesh = Mesh::new(drawn, degrees, &scene.file_name)?;
+    Ok((known.into_iter().map(|(_, s)| s).collect(), mesh, left_out))
+}
+
+/// Lit materials in use, by their number in the file, and those that cannot be shown.
+fn surfaces(scene: &Scene, folder: &Path, maps: &Pictures) -> (Vec<(Option<usize>, Surface)>, Vec<String>) {
+    let (mut surfaces, mut left_out) = (Vec::new(), Vec::new());
+    for material in scene.materials.iter().filter(|m| m.used && m.lit && !m.is_unlit()) {
+        let name = material.name.clone().unwrap_or_else(|| format!("material {}", material.index));
+        match MaterialTexels::read(material, scene, folder, maps) {
+            Ok(texels) => surfaces.push((Some(material.index), mean(name, &texels))),
+            Err(why) => left_out.push(format!("{name}: {why}")),
+        }
+    }
+    (surfaces, left_out)
 }
 
 fn mean(name: String, texels: &MaterialTexels) -> Surface {

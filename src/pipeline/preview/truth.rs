@@ -108,13 +108,12 @@ impl Truth {
     pub(super) fn panel(
         &self,
         panel: &Panel,
-        frame: &DMat3,
+        (from, frame): (DVec3, &DMat3),
         mu: f64,
         draws: u32,
         seed: u32,
     ) -> ([f64; 2], f64) {
         let wo = DVec3::new((1.0 - mu * mu).max(0.0).sqrt(), 0.0, mu);
-        let from = frame.z_axis;
         let points = Sobol::new(u64::from(seed));
         let mut halves = [[0.0; 2]; 2];
         for i in 0..draws {

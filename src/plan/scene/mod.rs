@@ -26,6 +26,8 @@ mod ggx;
 mod glass;
 mod kept;
 mod maps;
+mod mesh;
+mod numbers;
 mod phase;
 mod pictures;
 mod reasons;
@@ -43,6 +45,7 @@ use serde::Serialize;
 
 pub use kept::Kept;
 pub use maps::{AskedMap, KINDS, MapAsker, SceneMaps, maps};
+pub use mesh::Triangle;
 pub use pictures::{PIXELS, Pictures, bytes_of};
 pub use reasons::reasons;
 pub use survey::{Survey, SurveyOptions, Surveyed, Texels, survey, survey_with};

@@ -87,7 +87,12 @@ impl Pictures {
     }
 
     /// A part of a buffer of a scene in `folder`.
-    fn part<'a>(&self, source: &'a Source, part: [u64; 2], folder: &Path) -> Result<Cow<'a, [u8]>, String> {
+    pub(super) fn part<'a>(
+        &self,
+        source: &'a Source,
+        part: [u64; 2],
+        folder: &Path,
+    ) -> Result<Cow<'a, [u8]>, String> {
         let [from, length] = part.map(|n| usize::try_from(n).unwrap_or(usize::MAX));
         match source {
             Source::Missing(why) => Err(why.clone()),

@@ -47,6 +47,7 @@ fn rows(view: &View, b: &Provenance) -> Vec<[String; 3]> {
         texels: Err(String::new()),
         seconds: None,
         against: None,
+        convergence: Err(String::new()),
     };
     vec![
         text("program", &|p| p.tool.clone()),

@@ -100,6 +100,13 @@ pub(super) fn png(width: usize, codes: &[u8], palette: Option<Vec<u8>>) -> Strin
     if written.is_ok() { uri("image/png", &bytes) } else { String::new() }
 }
 
+/// A square PNG of RGB codes, as a data URI; empty if it has no pixel.
+pub(super) fn png_rgb(side: usize, codes: &[[u8; 3]]) -> String {
+    let height = codes.len() / side.max(1);
+    crate::picture::write_png([side, height], 3, codes.as_flattened())
+        .map_or_else(|_| String::new(), |bytes| uri("image/png", &bytes))
+}
+
 /// Bytes as a data URI.
 pub(super) fn uri(media: &str, bytes: &[u8]) -> String {
     format!("data:{media};base64,{}", STANDARD.encode(bytes))

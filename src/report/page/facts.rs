@@ -47,6 +47,11 @@ pub(super) fn scroll(what: &str, table: Markup) -> Markup {
     html! { div.scroll tabindex="0" role="group" aria-label=(what) { (table) } }
 }
 
+/// The same with words above that stay where they are.
+pub(super) fn captioned(what: &str, caption: &str, table: Markup) -> Markup {
+    html! { p.note { (caption) } (scroll(what, table)) }
+}
+
 /// What came of every law, and what was not checked.
 pub(super) fn laws(view: &View) -> Markup {
     let p = &view.provenance;
@@ -119,11 +124,11 @@ pub(super) fn budget(view: &View) -> Markup {
             bars.push(bar("reading, largest where mu >= 0.05, roughness >= 0.09", e.value, extreme(e)));
         }
     }
-    scroll(
+    captioned(
         &format!("error budget of {}", p.name),
+        &format!("Absolute errors; bars are logarithmic, from 1e-{DECADES} to 1. Reading includes rounding."),
         html! {
             table {
-                caption { "Absolute errors; bars are logarithmic, from 1e-" (DECADES) " to 1. Reading includes rounding." }
                 thead { tr { th scope="col" { "error" } th.n scope="col" { "size" } th scope="col" { "from 1e-" (DECADES) " to 1" } th scope="col" { "where" } } }
                 tbody { @for b in &bars { tr {
                     th scope="row" { (b.what) } td.n { (significant(b.value, 3)) }

@@ -7,16 +7,21 @@
 mod against;
 mod colour;
 mod curves;
+mod effort;
 mod facts;
 mod lobes;
 mod maps;
+mod parameter_maps;
 mod shown;
 mod spheres;
 mod view;
 mod why;
 mod worst;
 
-pub use view::{Against, FileView, Head, Origin, Texels, View};
+pub use parameter_maps::map_section;
+pub use view::{
+    Against, Convergence, FileView, Head, MapFileView, MapLevel, MapPlane, MapView, Origin, Texels, View,
+};
 
 use crate::grid::table::place;
 use crate::math::figures::{short, significant};
@@ -35,17 +40,35 @@ const SCRIPT: &str = include_str!("page.js");
 const POLICY: &str =
     "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
 
-/// What a page says of one table.
+/// What a page says of one table, or of one parameter map.
 #[derive(Debug)]
 pub struct Section {
     name: String,
     thumbnail: Option<String>,
-    cells: [String; 8],
+    cells: Cells,
     seconds: Option<[f64; 2]>,
+    /// Error against time.
+    times: Option<Markup>,
     body: Markup,
 }
 
-/// Name of the page of a table, counted from 0, where it has one of its own.
+/// The line of an overview.
+#[derive(Debug)]
+enum Cells {
+    Table([String; 8]),
+    Map([String; 6]),
+}
+
+impl Cells {
+    fn cells(&self, maps: bool) -> Option<&[String]> {
+        match self {
+            Cells::Table(cells) => (!maps).then_some(cells),
+            Cells::Map(cells) => maps.then_some(cells),
+        }
+    }
+}
+
+/// Name of the page of a table or map, counted from 0, tables before maps, where it has one of its own.
 #[must_use]
 pub fn page_of(table: usize) -> String {
     format!("report-{}.html", table + 1)
@@ -75,8 +98,9 @@ pub fn section(view: &View, against: Option<&str>) -> Section {
     Section {
         name: p.name.clone(),
         thumbnail: view.texels.as_ref().ok().and_then(thumbnail),
-        cells,
+        cells: Cells::Table(cells),
         seconds: view.seconds,
+        times: view.convergence.as_ref().ok().and_then(effort::times),
         body: body(view, against),
     }
 }
@@ -112,7 +136,7 @@ fn body(view: &View, against: Option<&str>) -> Markup {
         @if let Some(lobes) = lobes::lobes(view) { h3 { "Lobes" } (lobes) }
         h3 { "Error budget" } (facts::budget(view))
         h3 { "Laws" } (facts::laws(view))
-        h3 { "Effort" } (facts::effort(view))
+        h3 { "Effort" } (facts::effort(view)) (effort::chart(view))
         @if let Some(name) = against {
             h3 { "Comparison" }
             @match &view.against {
@@ -140,7 +164,7 @@ pub fn pages(head: &Head, sections: &[Section]) -> Vec<(String, Vec<u8>)> {
     let mut all = vec![(NAME.to_owned(), index.into_bytes())];
     for (i, s) in sections.iter().enumerate() {
         let page = html! {
-            header { h1 { "Report of " (head.recipe) } p { a href=(NAME) { "All its tables" } } }
+            header { h1 { "Report of " (head.recipe) } p { a href=(NAME) { "All tables and maps" } } }
             main { article { h2 { (s.name) } (s.body) } }
         };
         all.push((page_of(i), document(&format!("{}: {}", head.recipe, s.name), page, true).into_bytes()));
@@ -176,9 +200,9 @@ fn title(head: &Head) -> Markup {
     }
 }
 
-/// All tables, a line each.
+/// All tables, and all maps, a line each.
 fn overview(sections: &[Section], link: &dyn Fn(usize) -> String, thumbnails: bool) -> Markup {
-    const HEADS: [&str; 8] = [
+    const TABLES: [&str; 8] = [
         "size",
         "largest estimate",
         "asked for",
@@ -188,23 +212,50 @@ fn overview(sections: &[Section], link: &dyn Fn(usize) -> String, thumbnails: bo
         "laws held",
         "verdict",
     ];
+    const MAPS: [&str; 6] =
+        ["size", "levels", "largest D", "mean D of level 1", "texels with D >= 0.5", "bytes"];
+    let any = |maps: bool| sections.iter().any(|s| s.cells.cells(maps).is_some());
     html! {
-        nav aria-label="tables" {
-            h2 { "Tables" }
-            (facts::scroll("all tables", html! {
-                table {
-                    caption { "Absolute errors; reading: largest error between texels, in parentheses where mu >= 0.05 and roughness >= 0.09." }
-                    thead { tr {
-                        @if thumbnails { th scope="col" { "picture" } }
-                        th scope="col" { "table" } @for h in HEADS { th.n scope="col" { (h) } }
-                    } }
-                    tbody { @for (i, s) in sections.iter().enumerate() { tr {
-                        @if thumbnails { td { @if let Some(uri) = &s.thumbnail { img.flat src=(uri) width="64" height="64" alt=(format!("first channel of {}", s.name)); } } }
-                        th scope="row" { a href=(link(i)) { (s.name) } }
-                        @for c in &s.cells { td.n { (c) } }
-                    } } }
-                }
-            }))
+        nav aria-label="contents" {
+            @if any(false) || !any(true) {
+                h2 { "Tables" }
+                (facts::captioned(
+                    "all tables",
+                    "Absolute errors; reading: largest error between texels, in parentheses where mu >= 0.05 and roughness >= 0.09.",
+                    lines(sections, false, "table", &TABLES, link, thumbnails),
+                ))
+            }
+            @if any(true) {
+                h2 { "Maps" }
+                (facts::captioned(
+                    "all maps",
+                    "D is half the integral of |footprint - lobe|: 0 the same, 1 disjoint.",
+                    lines(sections, true, "map", &MAPS, link, thumbnails),
+                ))
+            }
+        }
+    }
+}
+
+fn lines(
+    sections: &[Section],
+    maps: bool,
+    what: &str,
+    heads: &[&str],
+    link: &dyn Fn(usize) -> String,
+    thumbnails: bool,
+) -> Markup {
+    html! {
+        table {
+            thead { tr {
+                @if thumbnails { th scope="col" { "picture" } }
+                th scope="col" { (what) } @for h in heads { th.n scope="col" { (h) } }
+            } }
+            tbody { @for (i, s) in sections.iter().enumerate() { @if let Some(cells) = s.cells.cells(maps) { tr {
+                @if thumbnails { td { @if let Some(uri) = &s.thumbnail { img.flat src=(uri) width="64" height="64" alt=(format!("first channel of {}", s.name)); } } }
+                th scope="row" { a href=(link(i)) { (s.name) } }
+                @for c in cells { td.n { (c) } }
+            } } } }
         }
     }
 }
@@ -216,18 +267,19 @@ fn rest(head: &Head, sections: &[Section]) -> Markup {
         @if let Some((name, only)) = head.against.as_ref().filter(|(_, only)| !only.is_empty()) {
             p { "Only " (name) " has: " (only.join(", ")) "." }
         }
-        @if sections.iter().any(|s| s.seconds.is_some()) {
+        @if sections.iter().any(|s| s.seconds.is_some() || s.times.is_some()) {
             section {
                 h2 { "Timings" }
                 p.note { "Of this run on this machine; they are no part of what the tables are." }
-                (facts::scroll("timings", html! {
+                @if sections.iter().any(|s| s.seconds.is_some()) { (facts::scroll("timings", html! {
                     table {
                         thead { tr { th scope="col" { "table" } th.n scope="col" { "integration, s" } th.n scope="col" { "laws, rounding, reading, s" } } }
                         tbody { @for s in sections { @if let Some([bake, check]) = s.seconds {
                             tr { th scope="row" { (s.name) } td.n { (format!("{bake:.3}")) } td.n { (format!("{check:.3}")) } }
                         } } }
                     }
-                }))
+                })) }
+                @for s in sections { @if let Some(times) = &s.times { h3 { (s.name) ": error against time" } (times) } }
             }
         }
     }

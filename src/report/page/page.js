@@ -10,8 +10,8 @@ for (const table of document.querySelectorAll('.table')) {
   const channels = JSON.parse(maps.dataset.channels);
   const axes = JSON.parse(maps.dataset.axes).map(([id, dims, values]) => ({ id, dims, values: floats(values) }));
   const values = floats(maps.dataset.values);
-  const estimates = short(maps.dataset.estimates);
-  const off = short(maps.dataset.off);
+  // a map says of its texels what it is off by in a channel of its own
+  const [estimates, off] = ['estimates', 'off'].map((key) => (maps.dataset[key] === undefined ? undefined : short(maps.dataset[key])));
   const read = maps.querySelector('.read');
   const pictures = [...maps.querySelectorAll('.map')];
   const slices = 1 + Math.max(...pictures.map((m) => Number(m.dataset.slice)));
@@ -24,6 +24,7 @@ for (const table of document.querySelectorAll('.table')) {
     const axis = ({ id, dims, values: all }) => `${id} = ${digits(all[[...dims].reduce((n, d) => n * length[d] + at[d], 0)], 6)}`;
     const first = ((at.s * height + at.y) * width + at.x) * channels.length;
     const channel = (id, i) => {
+      if (!estimates) return `${id} = ${digits(values[first + i], 4)}`;
       const known = Number.isFinite(estimates[first + i]);
       const error = known ? ` (estimate ${digits(estimates[first + i], 2)}, stored off by ${digits(off[first + i], 2)})` : ' (error not known)';
       return `${id} = ${digits(values[first + i], 6)}${error}`;

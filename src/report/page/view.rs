@@ -3,6 +3,7 @@
 use crate::grid::provenance::{Encoding, Reconstruction, TexelRecord};
 use crate::grid::table::named;
 use crate::grid::{Grid, Provenance, Table};
+use crate::verify::converge::{Chart, Times};
 use serde_json::Value as Json;
 
 /// A page before its tables.
@@ -35,6 +36,69 @@ pub struct View {
     pub seconds: Option<[f64; 2]>,
     /// The table of the same name that it is compared with.
     pub against: Option<Against>,
+    /// Error against evaluations; else why it is not drawn.
+    pub convergence: Result<Convergence, String>,
+}
+
+/// A parameter map.
+#[derive(Debug)]
+pub struct MapView {
+    /// How the names of its files begin.
+    pub name: String,
+    /// What its files say of themselves.
+    pub record: Json,
+    /// The files.
+    pub files: Vec<MapFileView>,
+    /// The levels that are shown, as they are read; else why there are none.
+    pub levels: Result<Vec<MapLevel>, String>,
+    /// What could not be shown, and why.
+    pub left_out: Vec<String>,
+}
+
+/// A file of a map.
+#[derive(Debug, Clone)]
+pub struct MapFileView {
+    /// Its name.
+    pub file: String,
+    /// Container.
+    pub container: String,
+    /// Storage.
+    pub storage: String,
+    /// Size.
+    pub bytes: u64,
+}
+
+/// A level of a map.
+#[derive(Debug, Clone)]
+pub struct MapLevel {
+    /// Its number, 0 the largest.
+    pub level: usize,
+    /// Width and height in texels.
+    pub size: [usize; 2],
+    /// Channels of all maps.
+    pub planes: Vec<MapPlane>,
+}
+
+/// A channel of a map.
+#[derive(Debug, Clone)]
+pub struct MapPlane {
+    /// Which map: `roughness`.
+    pub map: String,
+    /// Id of the channel.
+    pub channel: String,
+    /// Is it an error?
+    pub is_error: bool,
+    /// Rows from the top.
+    pub values: Vec<f64>,
+}
+
+/// Error against evaluations, and against time where that is to be shown.
+#[derive(Debug)]
+pub struct Convergence {
+    /// Of every method.
+    pub chart: Chart,
+    /// Seconds, of this run.
+    pub times: Option<Vec<Times>>,
 }
 
 /// A file of a table.

@@ -1,6 +1,6 @@
 //! Why the tables were baked, where scenes asked for them, and what was left out.
 
-use super::facts::scroll;
+use super::facts::captioned;
 use maud::{Markup, html};
 use serde_json::Value as Json;
 
@@ -11,9 +11,8 @@ pub(super) fn why(scenes: &Json) -> Markup {
             (text(f, "file")) ": " (number(f, "materials")) " materials, " (number(f, "images")) " pictures. "
         } }
         @let needs = list(scenes, "needs");
-        (scroll("why the tables were baked", html! {
+        (captioned("why the tables were baked", "Who asks for what", html! {
             table {
-                caption { "Who asks for what" }
                 thead { tr { th scope="col" { "lobe" } th scope="col" { "tables" } th scope="col" { "material" } th scope="col" { "because of" } } }
                 tbody {
                     @for need in needs { @for asked in list(need, "asked_by") { tr {
@@ -26,9 +25,8 @@ pub(super) fn why(scenes: &Json) -> Markup {
         }))
         @let left_out = list(scenes, "left_out");
         @if !left_out.is_empty() {
-            (scroll("what was left out", html! {
+            (captioned("what was left out", "Left out", html! {
                 table {
-                    caption { "Left out" }
                     thead { tr { th scope="col" { "what" } th scope="col" { "why" } th scope="col" { "materials" } } }
                     tbody { @for l in left_out { tr {
                         th scope="row" { (text(l, "what")) } td { (text(l, "why")) }

@@ -1,6 +1,6 @@
 //! The texels with the largest errors, as a table.
 
-use super::facts::scroll;
+use super::facts::captioned;
 use super::shown::Shown;
 use super::view::{Texels, View};
 use crate::math::figures::{short, significant};
@@ -18,11 +18,14 @@ pub(super) fn worst(view: &View, texels: &Texels, shown: &Shown) -> Markup {
     let n = texels.channels();
     let p = &view.provenance;
     let tolerance = p.integration.tolerance;
-    scroll(
+    captioned(
         &format!("worst texels of {}", p.name),
+        &format!(
+            "Largest |stored - integral| + estimate. The tolerance of the integrals is {}.",
+            short(tolerance)
+        ),
         html! {
             table {
-                caption { "Largest |stored - integral| + estimate. The tolerance of the integrals is " (short(tolerance)) "." }
                 thead { tr {
                     th scope="col" { "channel" }
                     @for r in &p.axes { th.n scope="col" { (r.axis.quantity.id) } }

@@ -241,7 +241,7 @@ fn half(wo: DVec3, wi: DVec3) -> f64 {
 }
 
 /// Axes of mu and alpha, if the channels are scale and bias of GGX with correlated masking, over these two alone.
-fn split_of_ggx(bound: &Bound) -> Option<[usize; 2]> {
+pub(crate) fn split_of_ggx(bound: &Bound) -> Option<[usize; 2]> {
     let spec = &bound.spec;
     let (info, params) = spec.model.as_ref()?;
     let usual = info.id == "ggx" && params.choice("masking").map_or(true, |m| m == "correlated");

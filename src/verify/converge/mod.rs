@@ -10,6 +10,7 @@ use super::seeds::Seeds;
 use crate::cancel::{Cancel, Cancelled};
 use crate::tables::spec::Bound;
 use crate::tables::{TexelError, place};
+pub(crate) use estimators::split_of_ggx;
 use estimators::{Estimators, Run};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -94,7 +95,7 @@ pub struct Point {
 pub struct Times {
     /// Id of the method.
     pub method: String,
-    /// Seconds of a texel on one thread, at each point.
+    /// Seconds of a texel on one thread, at each point: the median of the texels.
     pub seconds: Vec<f64>,
     /// Seconds of a texel that reach each of [`REACHED`].
     pub reached: Vec<Option<f64>>,
@@ -203,7 +204,7 @@ fn summary(id: &str, title: &str, runs: &[Run], reference: &Reference, names: &[
         if point.largest <= ABOVE * reference.error {
             continue;
         }
-        seconds.push(runs.iter().map(|r| r.seconds[b]).sum::<f64>() / runs.len().max(1) as f64);
+        seconds.push(median(runs.iter().map(|r| r.seconds[b]).collect()));
         points.push(point);
     }
     let first = |of: &dyn Fn(usize) -> f64| -> Vec<Option<f64>> {
@@ -221,6 +222,12 @@ fn summary(id: &str, title: &str, runs: &[Run], reference: &Reference, names: &[
     let order = order(&points);
     let times = Times { method: id.to_owned(), seconds: seconds.clone(), reached: in_time };
     (Series { method: id.to_owned(), title: title.to_owned(), order, reached, points }, times)
+}
+
+/// The middle one: a machine that does other things now and then slows some texels.
+fn median(mut seconds: Vec<f64>) -> f64 {
+    seconds.sort_by(f64::total_cmp);
+    seconds.get(seconds.len() / 2).copied().unwrap_or(0.0)
 }
 
 fn point(runs: &[Run], b: usize, reference: &Reference, names: &[String]) -> Point {
