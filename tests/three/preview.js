@@ -27,21 +27,11 @@ function environment(furnace) {
     return new THREE.PMREMGenerator(renderer).fromScene(scene).texture;
 }
 
-/** Linear red, green, blue and coverage of every pixel, rows from the top, of a picture of an object in [-1, 1]. */
-function picture(object, { size, texture, panel }) {
+/** Four numbers of every pixel, rows from the top. */
+function pixels(scene, size) {
     const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 10);
     camera.position.z = 5;
     const target = new THREE.WebGLRenderTarget(size, size, { type: THREE.FloatType });
-    const scene = new THREE.Scene();
-    scene.environment = texture;
-    scene.add(object);
-    if (panel) {
-        const light = new THREE.RectAreaLight(0xffffff, 1, 2.4, 1.6);
-        light.color.setRGB(1.5, 1.4, 1.2, THREE.LinearSRGBColorSpace);
-        light.position.set(-2, 1.6, 2.4);
-        light.lookAt(0, 0, 0);
-        scene.add(light);
-    }
     renderer.setRenderTarget(target);
     renderer.setClearColor(0, 0);
     renderer.clear();
@@ -54,7 +44,22 @@ function picture(object, { size, texture, panel }) {
     return rows.flat();
 }
 
-/** A picture of each sphere. */
+/** An object in [-1, 1] in its light. */
+function lit(object, { texture, panel }) {
+    const scene = new THREE.Scene();
+    scene.environment = texture;
+    scene.add(object);
+    if (panel) {
+        const light = new THREE.RectAreaLight(0xffffff, 1, 2.4, 1.6);
+        light.color.setRGB(1.5, 1.4, 1.2, THREE.LinearSRGBColorSpace);
+        light.position.set(-2, 1.6, 2.4);
+        light.lookAt(0, 0, 0);
+        scene.add(light);
+    }
+    return scene;
+}
+
+/** Linear red, green, blue and coverage of each sphere. */
 window.spheres = ({ size, surfaces, furnace, panel }) => {
     const texture = environment(furnace);
     const geometry = new THREE.IcosahedronGeometry(1, 63).toNonIndexed();
@@ -62,11 +67,11 @@ window.spheres = ({ size, surfaces, furnace, panel }) => {
     return surfaces.map(({ base, metallic, roughness }) => {
         const material = new THREE.MeshStandardMaterial({ metalness: metallic, roughness });
         material.color.setRGB(...base, THREE.LinearSRGBColorSpace);
-        return picture(new THREE.Mesh(geometry, material), { size, texture, panel });
+        return pixels(lit(new THREE.Mesh(geometry, material), { texture, panel }), size);
     });
 };
 
-/** A picture of the meshes of a glTF file, moved and shrunk into the unit sphere as `preview --mesh` does. */
+/** The same of the meshes of a glTF file, moved and shrunk into the unit sphere as `preview --mesh` does; and their normals, from 0 to 1. */
 window.mesh = async ({ size, url, panel }) => {
     const { scene } = await new GLTFLoader().loadAsync(url);
     scene.updateMatrixWorld(true);
@@ -81,11 +86,14 @@ window.mesh = async ({ size, url, panel }) => {
     group.add(scene);
     group.scale.setScalar(1 / radius);
     group.position.copy(middle).multiplyScalar(-1 / radius);
-    return picture(group, { size, texture: environment(false), panel });
+    const whole = lit(group, { texture: environment(false), panel });
+    const rendered = pixels(whole, size);
+    whole.overrideMaterial = new THREE.MeshNormalMaterial();
+    return { rendered, normals: pixels(whole, size) };
 };
 
 /** The pixels of a PNG: width, height, RGBA. */
-window.pixels = async (url) => {
+window.decoded = async (url) => {
     const image = new Image();
     image.src = url;
     await image.decode();
