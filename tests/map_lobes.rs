@@ -13,10 +13,13 @@ use crate::tolerance::{FIT_EXACT, LOBE_DIGITS, LOBE_OVER_DIRECTIONS, SINGLE_ANGL
 use brdfbake::cancel::Cancel;
 use brdfbake::encode::read::read_file;
 use brdfbake::functions::conversion::{By, conversion};
-use brdfbake::maps::Shape;
-use brdfbake::maps::sbrdf::{Normalise, exponent};
+use brdfbake::functions::{Angles, Subject};
+use brdfbake::maps::sbrdf::{CosineLobe, Normalise, exponent};
+use brdfbake::maps::{Effort, Shape};
 use brdfbake::picture::Space;
 use brdfbake::pipeline::audit::{State, audit};
+use brdfbake::pipeline::map::AnisotropyInput;
+use brdfbake::pipeline::map::texel::{MapTexel, TexelPlace};
 use brdfbake::pipeline::map::{
     ColourInput, FromLobe, MapError, MapOutcome, MapRequest, NumberInput, Origin, Output, RoughnessInput,
     SbrdfRequest, Second, run,
@@ -25,6 +28,7 @@ use brdfbake::pipeline::{Settings, fresh};
 use brdfbake::plan::Plan;
 use brdfbake::recipe;
 use glam::DVec3;
+use serde_json::{Map, json};
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
 use std::path::{Path, PathBuf};
 
@@ -233,6 +237,112 @@ fn lobes_that_cannot_be_are_told() {
         assert!(message.contains(expected), "{keys}: {message}");
         assert!(!out.exists(), "{keys}: something was written");
     }
+}
+
+/// Facets of two widths: Cx is not Cy, the tangent is that of the facets, and what the files reflect is as near as they say.
+#[test]
+fn brushed_facets_have_lobes_with_a_tangent() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut request =
+        request(RoughnessInput::Constant(0.5), &["exr:albedo=float+shape=float+anisotropy=float"]);
+    let (strength, rotation) = (0.7, 0.4f64);
+    request.anisotropy = Some(AnisotropyInput { strength, rotation, ..AnisotropyInput::default() });
+    request.filter.shape = Shape::Anisotropic;
+    let origin =
+        Origin::Metallic { base: ColourInput::Constant([0.9; 3]), metallic: NumberInput::Constant(1.0) };
+    request.sbrdf = Some(SbrdfRequest { origin, lobes: 3, residual: None, normalise: Normalise::Incident });
+    let done = bake(&request, dir.path(), 2).unwrap();
+    let told = done.record.sbrdf.as_ref().unwrap();
+    let at = |map: &str, name: &str| channel(dir.path(), map, name)[0];
+    let (x, y) = (at("tangent", "tangent.x"), at("tangent", "tangent.y"));
+    assert!(
+        (x - rotation.cos()).abs() < SINGLE_ANGLES && (y - rotation.sin()).abs() < SINGLE_ANGLES,
+        "{x} {y}"
+    );
+    let turned = |j: usize| at(&format!("lobe{j}.shape"), "c.x") / at(&format!("lobe{j}.shape"), "c.y");
+    assert!((1..=3).any(|j| (turned(j) - 1.0).abs() > 0.02), "{:?}", [1, 2, 3].map(turned));
+    let place = TexelPlace::parse(&format!("{}:0,0", dir.path().join("s").display())).unwrap();
+    let lobes =
+        MapTexel::read(&[place], 1, &Cancel::new()).unwrap().subject("lafortune", &Map::new()).unwrap();
+    let (low, high) = (0.25, 0.25 + 0.75 * strength * strength);
+    let params = json!({ "alpha_x": high, "alpha_y": low, "f0": 0.9 });
+    let truth = Subject::new("ggx", params.as_object().unwrap()).unwrap();
+    let (mut off, mut whole) = (0.0, 0.0);
+    for mu in [0.95f64, 0.75, 0.5, 0.3] {
+        for azimuth in [0.2f64, 0.9, 1.5, 2.6] {
+            let i = DVec3::new(
+                (1.0 - mu * mu).sqrt() * azimuth.cos(),
+                (1.0 - mu * mu).sqrt() * azimuth.sin(),
+                mu,
+            );
+            for (o, area) in crate::sbrdf::hemisphere(DVec3::new(-i.x, -i.y, i.z), 60, 48) {
+                let wo = [o.z.clamp(-1.0, 1.0).acos(), o.y.atan2(o.x)];
+                let value = |subject: &Subject, turn: f64| {
+                    let (wi_theta, wi_phi) = (Some(mu.acos()), Some(azimuth - turn));
+                    let angles =
+                        Angles { wi_theta, wi_phi, wo_theta: Some(wo[0]), wo_phi: Some(wo[1] - turn) };
+                    subject.value(&angles).unwrap() * o.z * area
+                };
+                let (a, b) = (value(&lobes, 0.0), value(&truth, rotation));
+                off += (a - b).abs();
+                whole += b;
+            }
+        }
+    }
+    assert!(off / whole < 2.0 * told.levels[0].mean, "{} residual {:?}", off / whole, told.levels);
+}
+
+/// A level against what its footprint reflects: told of the fast way, and followed by the reference mode, which comes nearer.
+#[test]
+fn levels_of_lobes_are_measured_and_refitted() {
+    let dir = tempfile::tempdir().unwrap();
+    let code = |x: u32, y: u32| if (x + y).is_multiple_of(2) { 80 } else { 190 };
+    let roughness = picture(dir.path(), "r.png", [2, 2], 1, |x, y, _| code(x, y));
+    let base = picture(dir.path(), "b.png", [2, 2], 3, |x, y, c| {
+        if (x + y).is_multiple_of(2) { 250 } else { [240, 90, 60][c] }
+    });
+    let mut request = request(RoughnessInput::new(roughness), &["exr:albedo=float+shape=float"]);
+    let origin = Origin::Metallic {
+        base: ColourInput::Image { image: base.into(), space: Space::Linear },
+        metallic: NumberInput::Constant(1.0),
+    };
+    request.sbrdf = Some(SbrdfRequest { origin, lobes: 2, residual: None, normalise: Normalise::Incident });
+    let (mut told, mut off) = (Vec::new(), Vec::new());
+    for effort in [Effort::Fast, Effort::Exact] {
+        request.filter.effort = effort;
+        let out = dir.path().join(format!("{effort:?}"));
+        let done = bake(&request, &out, 2).unwrap();
+        let level = &done.record.sbrdf.as_ref().unwrap().levels[1];
+        let measured = level.measured.unwrap();
+        assert!(measured.texels == 1 && measured.refit <= measured.mean, "{measured:?}");
+        told.push(if effort == Effort::Exact { level.mean } else { measured.mean });
+        let at = |map: &str, name: &str| {
+            let bytes = std::fs::read(out.join(format!("s.{map}.exr"))).unwrap();
+            let image = brdfbake::encode::read::read_level_until(&Cancel::new(), &bytes, 1).unwrap();
+            image.channel(name).unwrap().values[0]
+        };
+        let lobes = ["lobe1", "lobe2"].map(|lobe| {
+            let [albedo, shape] = ["albedo", "shape"].map(|m| format!("{lobe}.{m}"));
+            let c = ["c.x", "c.y", "c.z"].map(|c| at(&shape, c));
+            (CosineLobe { c, n: exponent(at(&shape, "exponent")) }, at(&albedo, "albedo.r"))
+        });
+        let diffuse = at("diffuse", "diffuse.r");
+        let (mut sum, mut whole) = (0.0, 0.0);
+        for mu in [0.97f64, 0.75, 0.6, 0.35] {
+            let i = DVec3::new((1.0 - mu * mu).sqrt(), 0.0, mu);
+            for (o, area) in crate::sbrdf::hemisphere(DVec3::new(-i.x, 0.0, i.z), 120, 48) {
+                let lobe = |(lobe, w): &(CosineLobe, f64)| w * lobe.power(i, o) / lobe.norm(i);
+                let f = diffuse * FRAC_1_PI + lobes.iter().map(lobe).sum::<f64>();
+                let facet = |code: f64, f0: f64| 0.5 * ggx(i, o, (code / 255.0f64).powi(2), f0 / 255.0);
+                let truth = facet(80.0, 250.0) + facet(190.0, 240.0);
+                sum += area * (f * o.z - truth).abs();
+                whole += area * truth;
+            }
+        }
+        off.push(sum / whole);
+        assert!(off[off.len() - 1] < 2f64.sqrt() * told[told.len() - 1], "{effort:?}: {off:?} {told:?}");
+    }
+    assert!(told[1] <= told[0] + SINGLE_ANGLES && off[1] < 1.02 * off[0], "{told:?} {off:?}");
 }
 
 /// Codes of lobes in an image of three channels.

@@ -102,6 +102,30 @@ fn pictures_of_all_kinds_are_filtered_or_refused() {
         done.map_err(|e| e.to_string())
     };
     let number = || RoughnessInput::Constant(0.5);
+    // WebP is a picture as PNG is
+    let mut webp = Vec::new();
+    let codes: Vec<u8> = (0..12).map(|i| if i % 3 == 1 { 51 } else { 200 }).collect();
+    let encoder = image::codecs::webp::WebPEncoder::new_lossless(&mut webp);
+    encoder.encode(&codes, 2, 2, image::ExtendedColorType::Rgb8).unwrap();
+    let found = bake(None, RoughnessInput::new(save("r.webp", &webp))).unwrap();
+    assert!(found.iter().all(|v| (v - 0.2).abs() < HELD_AS_SINGLE), "{found:?}");
+    let message = bake(None, RoughnessInput::new(save("cut.webp", &webp[..webp.len() / 2]))).unwrap_err();
+    assert!(message.contains("cut.webp: webp:"), "{message}");
+    // Basis Universal is told by its name, whichever of its codings it is
+    let table = dir.path().join("plain");
+    let request = MapRequest::new("b", None, RoughnessInput::new(save("r.webp", &webp)));
+    run(&request, &Settings::new(&table), &Cancel::new(), &|_, _| {}).unwrap();
+    let mut ktx2 = std::fs::read(table.join("b.roughness.ktx2")).unwrap();
+    ktx2[12..16].fill(0);
+    let model = u32::from_le_bytes(ktx2[48..52].try_into().unwrap()) as usize + 12;
+    for (name, scheme, code) in [("ETC1S", 1, 163), ("UASTC", 2, 166)] {
+        (ktx2[44], ktx2[model]) = (scheme, code);
+        let message = bake(None, RoughnessInput::new(save("basis.ktx2", &ktx2))).unwrap_err();
+        assert!(
+            message.contains(&format!("{name} of Basis Universal (KHR_texture_basisu) is not decoded")),
+            "{message}"
+        );
+    }
     // 16 bits: the last digit of one texel of a roughness is kept
     let wide: Vec<u8> = [0x4000u16, 0x4001, 0x8000, 0xffff].iter().flat_map(|v| v.to_be_bytes()).collect();
     let path = save("wide.png", &png([2, 2], ColorType::Grayscale, BitDepth::Sixteen, None, &wide));
@@ -136,6 +160,10 @@ fn pictures_of_all_kinds_are_filtered_or_refused() {
     let message = bake(Some(Input { signed: true, ..Input::new(path) }), number()).unwrap_err();
     let expected = "none.exr: level 0, texel (2, 1): the normal has no length; 4 more texels have faults";
     assert!(message.contains(expected), "{message}");
+    // the middle code of 8 bits is no direction
+    let middle = png([2, 1], ColorType::Rgb, BitDepth::Eight, None, &[128, 128, 255, 128, 127, 128]);
+    let message = bake(Some(Input::new(save("middle.png", &middle))), number()).unwrap_err();
+    assert!(message.contains("middle.png: level 0, texel (1, 0): the normal has no length"), "{message}");
     // a roughness above 1, and one that is infinite
     for (value, expected) in [(1.5, "roughness 1.5 outside [0, 1]"), (f32::INFINITY, "a value is not finite")]
     {

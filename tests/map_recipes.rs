@@ -131,13 +131,16 @@ fn maps_read_back_from_their_text() {
                  [[map]]\nname = 'numbers'\nroughness = 0.3\nsbrdf = { model = 'lafortune', base = [1, 0.5, 0], metallic = 0 }\n\
                  [[map]]\nname = 'ward'\nshape = 'anisotropic'\nrule = 'lean'\npacking = 'gltf'\n\
                  roughness = { file = 'images/s.png', channel = 'R', from = { lobe = 'ward', range = [0.01, 1], log = 'on', \
-                 rule = 'formula', second = 'G', angle = 'B' } }\n";
+                 rule = 'formula', second = 'G', angle = 'B' } }\n\
+                 [[map]]\nname = 'brushed'\nroughness = 0.3\nshape = 'anisotropic'\n\
+                 anisotropy = { file = 'images/s.png', strength = 0.5, rotation = 0.25, resample = 'on' }\n\
+                 [[map]]\nname = 'scratched'\nnormal = 'images/n.png'\nroughness = 0.3\nshape = 'two'\noutputs = ['ktx2:wide=bc5']\n";
     let plan = load(dir.path(), &format!("name = 'both'\n{TABLE}{MAP}{every}")).unwrap();
     let asked: Vec<_> = plan.maps.iter().map(|m| m.asked.clone()).collect();
     let text = recipe::text_with_maps("both", &plan.requests(), &asked).unwrap();
     let again = recipe::parse(&text, "again.toml").unwrap_or_else(|e| panic!("{e}\n{text}"));
     assert_eq!(again.hash, plan.hash, "{text}");
-    assert_eq!(again.maps.len(), 4);
+    assert_eq!(again.maps.len(), 6);
     let twice: Vec<_> = again.maps.iter().map(|m| m.asked.clone()).collect();
     assert_eq!(recipe::text_with_maps("both", &again.requests(), &twice).unwrap(), text);
     // an image within another file has no path that a recipe could name

@@ -114,14 +114,12 @@ fn other_coordinates_are_refused_by_name() {
         json!({ "KHR_texture_transform": { "scale": [2, 2], "rotation": 0 } });
     let mut wrap = material(1.0, 1.0);
     wrap["pbrMetallicRoughness"]["metallicRoughnessTexture"]["index"] = 2.into();
-    let mut brushed = material(1.0, 1.0);
-    brushed["extensions"] = json!({ "KHR_materials_anisotropy": { "anisotropyStrength": 0.5 } });
-    let path = scene(dir.path(), &json!([set, moved, both, wrap, brushed]));
+    let path = scene(dir.path(), &json!([set, moved, both, wrap]));
     let maps = found(&path, &[Kind::Roughness]);
     assert_eq!(maps.maps.len(), 1);
     assert_eq!(maps.maps[0].asked_by[0].material.index, Some(2));
     let told: Vec<&str> = maps.left_out.iter().map(|l| l.why.as_str()).collect();
-    for (why, part) in told.iter().zip(["UV set 1", "KHR_texture_transform", "wrap", "anisotropic"]) {
+    for (why, part) in told.iter().zip(["UV set 1", "KHR_texture_transform", "wrap"]) {
         assert!(why.contains(part), "{told:?}");
     }
     assert!(maps.left_out.iter().all(|l| l.kind == LeftOutKind::NotSupported && l.materials.len() == 1));
@@ -129,6 +127,50 @@ fn other_coordinates_are_refused_by_name() {
     let unknown = found(&path, &[Kind::Roughness]);
     assert!(unknown.maps.is_empty());
     assert!(unknown.left_out.iter().any(|l| l.kind == LeftOutKind::Unknown && l.why.contains("n.png")));
+}
+
+/// `KHR_materials_anisotropy`: facets of two widths, whatever was asked for, with texture, strength and rotation inside.
+#[test]
+fn brushed_materials_have_facets_of_two_widths() {
+    let dir = tempfile::tempdir().unwrap();
+    let brushed = |own: Json| {
+        let mut brushed = material(1.0, 1.0);
+        brushed["extensions"] = json!({ "KHR_materials_anisotropy": own });
+        brushed
+    };
+    let plain = brushed(json!({ "anisotropyStrength": 0.6, "anisotropyRotation": 0.5 }));
+    let off = brushed(json!({ "anisotropyStrength": 0.0, "anisotropyTexture": { "index": 1 } }));
+    // R and G of the texture are a direction, B is 40 or 80
+    let drawn = brushed(json!({ "anisotropyStrength": 1.0, "anisotropyTexture": { "index": 1 } }));
+    let other =
+        brushed(json!({ "anisotropyStrength": 1.0, "anisotropyTexture": { "index": 1, "texCoord": 1 } }));
+    let path = scene(dir.path(), &json!([plain, off, drawn, other]));
+    let maps = found(&path, &[Kind::Roughness]);
+    assert_eq!(maps.maps.len(), 3);
+    let told: Vec<&str> = maps.left_out.iter().map(|l| l.why.as_str()).collect();
+    assert_eq!(told, ["normalTexture has UV set 0, and anisotropyTexture 1"]);
+    assert!(maps.maps[0].asked_by[0].why.ends_with("anisotropyStrength 0.6"), "{:?}", maps.maps[0].asked_by);
+    let out = dir.path().join("out");
+    let manifest = bake(&maps, &out);
+    let shapes: Vec<&str> = manifest.maps.iter().map(|m| m.record.shape.as_str()).collect();
+    assert_eq!(shapes, ["anisotropic", "isotropic", "anisotropic"]);
+    let read =
+        |name: &str| brdfbake::encode::read::read_file(&out.join(format!("{name}.anisotropy.ktx2"))).unwrap();
+    let first = read("material0");
+    let number = |image: &brdfbake::encode::Image, c: usize, i: usize| image.channels[c].values[i];
+    let direction =
+        |image: &brdfbake::encode::Image, i: usize| [0, 1].map(|c| 2.0 * number(image, c, i) - 1.0);
+    assert!((number(&first, 2, 0) - 0.6).abs() < 0.005, "{}", number(&first, 2, 0));
+    let [x, y] = direction(&first, 0);
+    assert!((x - 0.5_f64.cos()).abs() < 0.005 && (y - 0.5_f64.sin()).abs() < 0.005, "{x} {y}");
+    // red 255, green 128: along the tangent; the texture is brought to the size of the normals, and repeats
+    let third = read("material2");
+    let [x, y] = direction(&third, 0);
+    assert!((x.abs() - 1.0).abs() < 0.005 && y.abs() < 0.02, "{x} {y}");
+    assert!((number(&third, 2, 0) - 50.0 / 255.0).abs() < 0.005, "{}", number(&third, 2, 0));
+    // the filter sees both widths: D of its lobe is told and measured alike
+    let level = &manifest.maps[0].record.levels[1];
+    assert!(level.measured.as_ref().unwrap().miss < 0.02 && level.mean > 0.0, "{level:?}");
 }
 
 /// Tables that are planned with maps reach as far as their levels do; materials without normals do not widen them.

@@ -8,5 +8,6 @@ mod map_lobes;
 mod map_pictures;
 mod map_recipes;
 mod map_scenes;
+mod map_texels;
 mod sbrdf;
 mod tolerance;

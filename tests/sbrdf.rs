@@ -110,6 +110,27 @@ fn lobes_that_are_known_are_found() {
     }
 }
 
+/// A lobe whose C has three different elements is found again from lights at several azimuths.
+#[test]
+fn lobes_of_two_axes_are_found_again() {
+    let lobe = CosineLobe { c: [-1.0, -0.8, 0.9], n: 30.0 };
+    let value = |i: DVec3, o: DVec3| {
+        let turned = DVec3::from_array(lobe.c) * i;
+        (0.1 * FRAC_1_PI + 0.6 * turned.dot(o).max(0.0).powf(lobe.n) / lobe.norm(i)) * o.z
+    };
+    let directions = Directions::stretched([0.3, 0.15]);
+    let target = directions.sample(value).into_iter().map(Some).collect();
+    let problem = Problem::new(directions, &[target], &[1.0], Normalise::Incident);
+    let fit = problem.finish(&problem.descend(&start(0.2, 1), 200));
+    assert!(fit.all() < LOBE_FIT, "residual {}", fit.all());
+    let got = fit.shapes[0].lobe();
+    assert!((got.n / lobe.n - 1.0).abs() < 0.02, "{got:?}");
+    assert!(got.c.iter().zip(lobe.c).all(|(a, b)| (a - b).abs() < 0.01), "{got:?}");
+    let again = Shape::of(&got);
+    let [a, b] = [again.lobe().c, got.c];
+    assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < MANY_ROUNDINGS), "{a:?} {b:?}");
+}
+
 /// Lobes over their integral reflect their albedo; over the largest one at most that, and both ways alike.
 #[test]
 fn albedos_are_what_lobes_reflect() {

@@ -6,13 +6,17 @@
 //! (`describe ID`), and columns that it does not read may be blank. Other columns are passed through; one that has the name
 //! of the result already, as in a file that was evaluated before, gets new values.
 //!
+//! With `--texel` a texel of a map that `brdfbake map` wrote tells parameters of every row, and the frame of its lobes.
+//!
 //! Every row is written before the next one is read. The first that cannot be evaluated ends the run; into a file
 //! (`--out`) only all of them are written.
 
+use super::texel::Texels;
 use super::{Exit, Failure, output};
 use crate::cancel::Cancel;
 use crate::encode::atomic;
 use crate::functions::{Angles, EvalError, Subject};
+use crate::pipeline::map::texel::MapTexel;
 use crate::pipeline::{PipelineError, transaction};
 use serde::de::{Deserialize, Deserializer, Error as _, MapAccess, Visitor};
 use serde_json::{Map, Value as Json};
@@ -25,6 +29,7 @@ const EXAMPLES: &str = concat!(
     "Examples:",
     "\n  brdfbake eval directions.csv",
     "\n  brdfbake eval directions.csv -o values.csv",
+    "\n  brdfbake eval directions.csv --texel maps/map:3,1,1",
 );
 
 /// Arguments of `eval`.
@@ -36,6 +41,8 @@ pub struct Args {
     /// Name of the column of the result; one that is there already gets new values.
     #[arg(long, default_value = "brdfbake")]
     column: String,
+    #[command(flatten)]
+    texels: Texels,
     /// Write into this file, all rows or nothing; to stdout, row by row, if not given.
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -66,6 +73,7 @@ pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
         transaction::check(out.parent().unwrap_or(Path::new("")), name.as_slice())
             .map_err(PipelineError::from)?;
     }
+    let texel = args.texels.read(cancel)?;
     let mut reader = csv::Reader::from_reader(input);
     let headers = reader.headers().map_err(|e| unreadable(&name, e))?.clone();
     let header = Header::new(&headers, column).map_err(|why| Failure::input(format!("{name}: {why}")))?;
@@ -81,7 +89,7 @@ pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
         cancel.check()?;
         let record = record.map_err(|e| unreadable(&name, e))?;
         let line = record.position().map_or(0, csv::Position::line);
-        let value = evaluate(&record, &header, &mut cache).map_err(|f| {
+        let value = evaluate(&record, &header, texel.as_ref(), &mut cache).map_err(|f| {
             let message = format!("{name}:{line}: {}", f.message);
             let told = f.message.clone();
             Failure { message, ..f }.at("file", name.as_str()).at("line", line).at("message", told)
@@ -191,6 +199,7 @@ impl<'a> Sink<'a> {
 fn evaluate(
     record: &csv::StringRecord,
     header: &Header,
+    texel: Option<&MapTexel>,
     cache: &mut HashMap<(String, String), Subject>,
 ) -> Result<f64, Failure> {
     let field = |i: usize| record.get(header.inputs[i]).unwrap_or("").trim();
@@ -199,7 +208,11 @@ fn evaluate(
         if cache.len() >= KEPT {
             cache.clear();
         }
-        let subject = Subject::new(&key.0, &parameters(&key.1)?).map_err(Failure::input)?;
+        let given = parameters(&key.1)?;
+        let subject = match texel {
+            Some(texel) => texel.subject(&key.0, &given).map_err(Failure::input)?,
+            None => Subject::new(&key.0, &given).map_err(Failure::input)?,
+        };
         cache.insert(key.clone(), subject);
     }
     let Some(subject) = cache.get(&key) else { return Err(Failure::new(Exit::Internal, "cache")) };

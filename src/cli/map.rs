@@ -1,15 +1,15 @@
 //! `brdfbake map`: parameter maps with filtered levels, and how far each level is from the texels that it stands for.
 
 use super::limits::Limits;
-use super::{Exit, Failure, map_options, map_sbrdf, output};
+use super::{Exit, Failure, map_facets, map_sbrdf, output};
 use crate::cancel::Cancel;
 use crate::encode::mips::containers;
 use crate::functions::conversion::{By, CONVERSIONS};
-use crate::maps::{Centre, Convention, Effort, Objective, RULES, Shape, rules};
+use crate::maps::{Centre, Convention, Effort, Objective, RULES, rules};
 use crate::math::figures::short;
 use crate::math::nearest::offer;
 use crate::picture::{Space, Wrap};
-use crate::pipeline::map::{MapError, MapOutcome, run as filter};
+use crate::pipeline::map::{MapOutcome, run as filter};
 use crate::plan::Fault;
 use crate::plan::map::{FromLobe, Input, MapRequest, Output, Packing, RoughnessInput, Second};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -24,7 +24,7 @@ const EXAMPLES: &str = "Examples:\n  brdfbake map --normal normal.png --roughnes
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Normal map: PNG, JPEG, EXR, KTX2, DDS or HDR. Codes 0..1 stand for -1..1.
+    /// Normal map: PNG, JPEG, WebP, EXR, KTX2, DDS or HDR. Codes 0..1 stand for -1..1.
     #[arg(short, long, value_name = "FILE")]
     normal: Option<PathBuf>,
     /// Roughness: an image, or a number.
@@ -87,9 +87,9 @@ pub struct Args {
     /// Bring the smaller of both maps to the size of the larger one.
     #[arg(long, requires = "normal")]
     resample: bool,
-    /// What lies beyond the border, where a map is resampled.
-    #[arg(long, value_enum, default_value = "repeat", requires = "resample")]
-    wrap: WrapMode,
+    /// What lies beyond the borders, where a map is resampled; one word, or one for each axis (repeat,clamp).
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "repeat", requires = "resample")]
+    wrap: Vec<WrapMode>,
     /// Filter rule: fit, or a published one (`list rules`).
     #[arg(long, default_value = "fit")]
     rule: String,
@@ -99,6 +99,8 @@ pub struct Args {
     /// Fit two widths and a direction, as KHR_materials_anisotropy has them, and write them.
     #[arg(long)]
     anisotropic: bool,
+    #[command(flatten)]
+    facets: map_facets::Facets,
     /// Reference mode: every facet, 16384 nodes, milliseconds a texel.
     #[arg(long)]
     exact: bool,
@@ -143,6 +145,16 @@ enum WrapMode {
     Repeat,
     Mirror,
     Clamp,
+}
+
+impl WrapMode {
+    const fn mode(self) -> Wrap {
+        match self {
+            WrapMode::Repeat => Wrap::Repeat,
+            WrapMode::Mirror => Wrap::Mirror,
+            WrapMode::Clamp => Wrap::Clamp,
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -199,10 +211,11 @@ fn request(args: &Args) -> Result<MapRequest, Failure> {
     };
     let normal = args.normal.as_ref().map(|path| normal(args, path)).transpose()?;
     let mut request = MapRequest::new(&args.name, normal, roughness(args)?);
+    request.anisotropy = args.facets.request(request.normal.as_ref(), args.resample)?;
     let filter = &mut request.filter;
     filter.rule = rule;
     filter.centre = if args.normals == Normals::Fit { Centre::Free } else { Centre::Mean };
-    filter.shape = if args.anisotropic { Shape::Anisotropic } else { Shape::Isotropic };
+    filter.shape = args.facets.shape(args.anisotropic);
     filter.effort = if args.exact { Effort::Exact } else { Effort::Fast };
     filter.objective =
         if args.objective == Aim::Reflected { Objective::Reflected } else { Objective::Normals };
@@ -227,10 +240,10 @@ fn formats() -> String {
 }
 
 fn normal(args: &Args, path: &std::path::Path) -> Result<Input, Failure> {
-    let wrap = match args.wrap {
-        WrapMode::Repeat => Wrap::Repeat,
-        WrapMode::Mirror => Wrap::Mirror,
-        WrapMode::Clamp => Wrap::Clamp,
+    let wrap = match args.wrap[..] {
+        [both] => [both.mode(); 2],
+        [across, down] => [across.mode(), down.mode()],
+        _ => return Err(Failure::usage("--wrap: one word is needed, or two, as in repeat,clamp")),
     };
     let least = if args.derive_z { 2 } else { 3 };
     let mut names = args.normal_channels.clone();
@@ -250,7 +263,7 @@ fn normal(args: &Args, path: &std::path::Path) -> Result<Input, Failure> {
             mend: args.mend_normals,
         },
         signed: args.signed,
-        wrap: [wrap; 2],
+        wrap,
         resample: args.resample,
     })
 }
@@ -366,28 +379,4 @@ fn summary(outcome: &MapOutcome, folder: &std::path::Path) -> String {
     let folder = folder.display();
     out.push_str(&format!("{folder}: {} files written, {} unchanged", outcome.written, outcome.unchanged));
     out
-}
-
-impl From<MapError> for Failure {
-    fn from(error: MapError) -> Failure {
-        use crate::encode::{EncodeError, ReadError};
-        use crate::maps::FilterError;
-        let error = match error {
-            MapError::Run(e) => return Failure::from(e),
-            other => other,
-        };
-        let exit = match &error {
-            MapError::Filter(FilterError::Cancelled(_))
-            | MapError::Read { source: ReadError::Cancelled(_), .. }
-            | MapError::Encode { source: EncodeError::Cancelled(_), .. } => {
-                return Failure::new(Exit::Interrupted, "interrupted; nothing was written");
-            }
-            MapError::Read { source: ReadError::Io { .. }, .. } => Exit::Io,
-            MapError::Plan(e) => return map_options::refused(e),
-            MapError::Changed { .. } => Exit::Io,
-            MapError::Encode { source, .. } => Exit::of_encode(source),
-            _ => Exit::Input,
-        };
-        Failure::new(exit, error)
-    }
 }

@@ -1,6 +1,7 @@
-//! The faults of a map as those of the options of `brdfbake map`.
+//! The faults of a map as those of the options of `brdfbake map`, and its other errors with their exit codes.
 
 use super::{Exit, Failure};
+use crate::pipeline::map::MapError;
 use crate::plan::{Fault, PlanError, Step};
 
 /// Options of the keys of a request.
@@ -13,6 +14,9 @@ const OPTIONS: &[(&[&str], &str)] = &[
     (&["roughness", "from", "second"], "--second-channel"),
     (&["roughness", "from", "angle"], "--angle-channel"),
     (&["roughness"], "--roughness"),
+    (&["anisotropy", "strength"], "--anisotropy-strength"),
+    (&["anisotropy", "rotation"], "--anisotropy-rotation"),
+    (&["anisotropy"], "--anisotropy"),
     (&["sbrdf", "lobes"], "--lobes"),
     (&["sbrdf", "residual"], "--residual"),
     (&["sbrdf", "base"], "--base-color"),
@@ -20,7 +24,7 @@ const OPTIONS: &[(&[&str], &str)] = &[
     (&["sbrdf", "metallic"], "--metallic"),
     (&["sbrdf", "brdf"], "--brdf"),
     (&["sbrdf"], "--sbrdf"),
-    (&["shape"], "--anisotropic"),
+    (&["shape"], "--anisotropic or --two-lobes"),
     (&["normals"], "--normals fit"),
     (&["objective"], "--objective"),
     (&["outputs"], "--format"),
@@ -30,7 +34,7 @@ const OPTIONS: &[(&[&str], &str)] = &[
 ];
 
 /// The faults of a request as those of options.
-pub(super) fn refused(error: &PlanError) -> Failure {
+fn refused(error: &PlanError) -> Failure {
     let line = |(place, fault): &(crate::plan::Place, Fault)| {
         let keys = place.path.steps().iter().filter_map(|s| match s {
             Step::Key(key) => Some(key.as_str()),
@@ -58,4 +62,28 @@ pub(super) fn refused(error: &PlanError) -> Failure {
     let faults = error.faults.iter().zip(&lines).map(object).collect();
     let exit = exit.max_by_key(|e| *e as u8).unwrap_or(Exit::Internal);
     Failure { faults, ..Failure::new(exit, lines.join("\nerror: ")) }
+}
+
+impl From<MapError> for Failure {
+    fn from(error: MapError) -> Failure {
+        use crate::encode::{EncodeError, ReadError};
+        use crate::maps::FilterError;
+        let error = match error {
+            MapError::Run(e) => return Failure::from(e),
+            other => other,
+        };
+        let exit = match &error {
+            MapError::Filter(FilterError::Cancelled(_))
+            | MapError::Read { source: ReadError::Cancelled(_), .. }
+            | MapError::Encode { source: EncodeError::Cancelled(_), .. } => {
+                return Failure::new(Exit::Interrupted, "interrupted; nothing was written");
+            }
+            MapError::Read { source: ReadError::Io { .. }, .. } => Exit::Io,
+            MapError::Plan(e) => return refused(e),
+            MapError::Changed { .. } => Exit::Io,
+            MapError::Encode { source, .. } => Exit::of_encode(source),
+            _ => Exit::Input,
+        };
+        Failure::new(exit, error)
+    }
 }

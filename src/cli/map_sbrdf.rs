@@ -42,7 +42,7 @@ pub(super) struct Lobes {
 
 /// What a measured BRDF does nothing with: it has one lobe for all texels, and no maps. `requires` is silent where what is required is
 /// refused.
-const MEASURED_NOT: [&str; 34] = [
+const MEASURED_NOT: [&str; 38] = [
     "base_color",
     "base_color_linear",
     "metallic",
@@ -74,6 +74,10 @@ const MEASURED_NOT: [&str; 34] = [
     "rule",
     "normals",
     "anisotropic",
+    "two_lobes",
+    "anisotropy",
+    "anisotropy_strength",
+    "anisotropy_rotation",
     "exact",
     "objective",
     "compare",
@@ -140,7 +144,10 @@ pub(super) fn lobes(record: &MapRecord, out: &mut String) {
     out.push_str(&format!("{count} lobes of Lafortune a texel, each over its {over} integral{way}\n"));
     for (k, level) in told.levels.iter().enumerate() {
         let (mean, largest) = (short(level.mean), short(level.largest));
-        out.push_str(&format!("level {k}: residual mean {mean}, largest {largest}\n"));
+        let own = level.measured.map_or_else(String::new, |m| {
+            format!("; against the footprints {}, refit {}", short(m.mean), short(m.refit))
+        });
+        out.push_str(&format!("level {k}: residual mean {mean}, largest {largest}{own}\n"));
     }
     let [mean, largest] = told.storage.map(short);
     out.push_str(&format!("storage changes the lobes by {mean} (largest {largest})\n"));

@@ -23,6 +23,7 @@ pub mod limits;
 pub mod list;
 pub mod man;
 pub mod map;
+mod map_facets;
 mod map_options;
 mod map_sbrdf;
 pub mod output;
@@ -39,6 +40,7 @@ pub mod schema;
 pub mod stress;
 mod suggest;
 pub mod terminal;
+mod texel;
 pub mod verify;
 
 use crate::cancel::Cancel;

@@ -1,10 +1,12 @@
 //! `brdfbake plot MODEL...`: lobes as polar plots or maps of the hemisphere, or albedos as curves; as SVG or PNG.
 
+use super::texel::Texels;
 use super::{Exit, Failure, albedo, output};
 use crate::cancel::Cancel;
 use crate::encode::atomic;
 use crate::math::figures::exact;
 use crate::models::{self, Brdf, ModelInfo, Params};
+use crate::pipeline::map::texel::MapTexel;
 use crate::report::plot::{self, Figure, Look, PlotError, Scale, Subject};
 use serde_json::{Map, Value as Json};
 use std::path::PathBuf;
@@ -17,6 +19,7 @@ const EXAMPLES: &str = concat!(
     "\n  brdfbake plot ggx beckmann --sweep alpha=0.2,0.4 --angles 45 -o widths.png",
     "\n  brdfbake plot ward --param alpha_x=0.1 --param alpha_y=0.4 --show map --azimuth 30 -o ward.png",
     "\n  brdfbake plot oren-nayar eon --show albedo -o albedo.svg",
+    "\n  brdfbake plot ggx --texel maps/map:3,1,1 -o texel.svg",
 );
 
 /// Most lobes in a picture.
@@ -46,6 +49,8 @@ pub struct Args {
     /// A parameter with several values, each of which is drawn.
     #[arg(long, value_name = "KEY=V1,V2,...")]
     sweep: Option<String>,
+    #[command(flatten)]
+    texels: Texels,
     /// What to draw.
     #[arg(long, value_enum, default_value = "lobe")]
     show: Show,
@@ -76,7 +81,8 @@ pub fn run(args: &Args, cancel: &Arc<Cancel>) -> Result<Exit, Failure> {
     if let Some(bad) = args.azimuth.filter(|a| !(-360.0..=360.0).contains(a)) {
         return Err(Failure::usage(format!("--azimuth {} outside [-360, 360] degrees", exact(bad))));
     }
-    let built = build(args)?;
+    let texel = args.texels.read(cancel)?;
+    let built = build(args, texel.as_ref())?;
     let title = match built.as_slice() {
         [one] => one.info.title.to_owned(),
         _ => heading(args, &built),
@@ -140,6 +146,8 @@ struct Built {
     info: &'static ModelInfo,
     /// Those that are shown.
     params: Map<String, Json>,
+    /// What a texel tells.
+    texel: Option<String>,
     model: Box<dyn Brdf>,
 }
 
@@ -151,12 +159,13 @@ impl Built {
         if with_model {
             words.insert(0, self.info.id.to_owned());
         }
+        words.extend(self.texel.clone());
         words.join(", ")
     }
 }
 
 /// Every model with every value of the sweep.
-fn build(args: &Args) -> Result<Vec<Built>, Failure> {
+fn build(args: &Args, texel: Option<&MapTexel>) -> Result<Vec<Built>, Failure> {
     let given = albedo::parse_params(&args.params)?;
     let (key, values) = match &args.sweep {
         None => (String::new(), vec![None]),
@@ -185,19 +194,22 @@ fn build(args: &Args) -> Result<Vec<Built>, Failure> {
             let mut params: Map<String, Json> =
                 given.iter().filter(|(k, _)| knows(k)).map(|(k, v)| (k.clone(), v.clone())).collect();
             params.extend(value.iter().filter(|_| knows(&key)).map(|v| (key.clone(), v.clone())));
-            let (info, model) = albedo::build(name, &params)?;
+            let model = match texel {
+                Some(texel) => texel.model((info, implied), &params).map_err(Failure::input)?,
+                None => albedo::build(name, &params)?.1,
+            };
             if model.mirror(1.0).is_some() {
                 let message =
                     format!("{} is a mirror with these parameters: a delta has no lobe to draw", info.id);
                 return Err(Failure::new(Exit::Unsupported, message));
             }
-            if !several && values.len() == 1 {
+            if !several && values.len() == 1 && texel.is_none() {
                 // there is room for what was left as it is
                 let implied = models::implied_values(implied);
                 let resolved = Params::resolve_over(info.id, info.params, &implied, &params);
                 params = resolved.map_err(Failure::input)?.to_json(&[]);
             }
-            all.push(Built { info, params, model });
+            all.push(Built { info, params, texel: texel.map(MapTexel::words), model });
         }
     }
     let keys = given.keys().map(String::as_str).chain((!key.is_empty()).then_some(key.as_str()));

@@ -4,7 +4,7 @@
 
 use super::dds::{HEAD, TEXTURE2D, TEXTURE3D, storage};
 use super::dds_masks::Masks;
-use super::read::{Image, MAX_SAMPLES, Plane, ReadError};
+use super::read::{Image, MAX_SAMPLES, Plane, ReadError, no_level};
 use super::{Storage, texels};
 use crate::cancel::Cancel;
 
@@ -23,21 +23,6 @@ struct Header {
     pixels: Pixels,
     /// Where the pixels begin.
     start: usize,
-}
-
-impl Header {
-    /// As if the file began with a smaller level.
-    fn level(mut self, level: usize) -> Result<Header, ReadError> {
-        if level >= self.levels.min(32) as usize || self.slices > 1 {
-            return Err(fault(format!("level {level} of {} in {} slices", self.levels, self.slices)));
-        }
-        for _ in 0..level {
-            let size = self.pixels.bytes([self.width, self.height, 1]);
-            self.start = self.start.saturating_add(size.unwrap_or(usize::MAX));
-            (self.width, self.height) = ((self.width / 2).max(1), (self.height / 2).max(1));
-        }
-        Ok(self)
-    }
 }
 
 /// How a pixel lies in the file.
@@ -74,9 +59,6 @@ impl Pixels {
 
 pub(super) fn read(bytes: &[u8], level: usize, cancel: &Cancel) -> Result<Image, ReadError> {
     let mut h = header(bytes)?;
-    if level > 0 {
-        h = h.level(level)?;
-    }
     let height = h.height.saturating_mul(h.slices);
     if h.width.saturating_mul(height).saturating_mul(h.pixels.components()) > MAX_SAMPLES {
         return Err(ReadError::Samples { format: FORMAT, width: h.width, height });
@@ -84,8 +66,19 @@ pub(super) fn read(bytes: &[u8], level: usize, cancel: &Cancel) -> Result<Image,
     if h.levels > 1 && h.slices > 1 {
         return Err(fault(format!("{} levels of {} slices are not supported", h.levels, h.slices)));
     }
-    let extent = [h.width, h.height, h.slices];
-    let size = h.pixels.bytes(extent).ok_or(ReadError::Samples { format: FORMAT, width: h.width, height })?;
+    if level >= (h.levels as usize).clamp(1, 31) {
+        return Err(no_level(FORMAT, level, h.levels as usize));
+    }
+    let size = |h: &Header| {
+        let bytes = h.pixels.bytes([h.width, h.height, h.slices]);
+        bytes.ok_or(ReadError::Samples { format: FORMAT, width: h.width, height })
+    };
+    for _ in 0..level {
+        h.start = h.start.saturating_add(size(&h)?);
+        (h.width, h.height) = ((h.width / 2).max(1), (h.height / 2).max(1));
+    }
+    let (extent, size) = ([h.width, h.height, h.slices], size(&h)?);
+    let height = h.height.saturating_mul(h.slices);
     let data = bytes.get(h.start..h.start.saturating_add(size)).ok_or_else(|| {
         let got = bytes.len().saturating_sub(h.start);
         fault(format!("the file has {got} bytes of pixels, its header tells of {size}"))

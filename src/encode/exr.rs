@@ -90,7 +90,11 @@ impl Encoder for Exr {
     }
 
     fn read(&self, bytes: &[u8], cancel: &Cancel) -> Result<Picture, ReadError> {
-        super::exr_read::read(bytes, cancel)
+        super::exr_read::read(bytes, 0, cancel)
+    }
+
+    fn read_level(&self, bytes: &[u8], level: usize, cancel: &Cancel) -> Result<Picture, ReadError> {
+        super::exr_read::read(bytes, level, cancel)
     }
 
     fn joins(&self) -> bool {

@@ -1,4 +1,4 @@
-//! Reads OpenEXR: every channel of every flat part, largest resolution level.
+//! Reads OpenEXR: every channel of every flat part, one level of resolution.
 //!
 //! The blocks are put into the picture here and not by the `exr` crate's own collector: that one trusts the offset
 //! table, and a table that names one block twice and another never gives a picture with zeros in it and no error.
@@ -8,14 +8,16 @@
 
 use super::exr_chunks::{self, Chunks};
 use super::exr_names;
-use super::read::{Claim, Image, MAX_SAMPLES, Plane, ReadError, Sample};
+use super::read::{Claim, Image, MAX_SAMPLES, Plane, ReadError, Sample, no_level};
 use crate::cancel::Cancel;
 use crate::grid::provenance::ATTRIBUTE;
 use ::exr::block::UncompressedBlock;
 use ::exr::block::chunk::{Chunk, CompressedBlock};
 use ::exr::error::{Error, Result as ExrResult};
-use ::exr::meta::MetaData;
-use ::exr::meta::attribute::{AttributeValue, SampleType, Text};
+use ::exr::math::Vec2;
+use ::exr::meta::attribute::{AttributeValue, LevelMode, SampleType, Text};
+use ::exr::meta::{BlockDescription, MetaData, compute_level_count, compute_level_size};
+
 use ::exr::meta::header::Header;
 use ::exr::prelude::f16;
 use std::collections::BTreeSet;
@@ -28,17 +30,18 @@ const MAX_CHANNELS: usize = 4096;
 
 /// Reads a file. The crate (1.74) panics on some damaged B44 blocks where overflow checks are on, so a panic is caught
 /// and told as an error; the message of the panic hook, if the program has one, is still printed.
-pub(super) fn read(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
-    std::panic::catch_unwind(|| decode(bytes, cancel))
+pub(super) fn read(bytes: &[u8], level: usize, cancel: &Cancel) -> Result<Image, ReadError> {
+    std::panic::catch_unwind(|| decode(bytes, level, cancel))
         .unwrap_or_else(|_| Err(fault("the data are damaged (the decoder gave up)".to_owned())))
 }
 
-fn decode(bytes: &[u8], cancel: &Cancel) -> Result<Image, ReadError> {
+fn decode(bytes: &[u8], level: usize, cancel: &Cancel) -> Result<Image, ReadError> {
     let meta = ::exr::block::read(Cursor::new(bytes), false).map_err(library)?.into_meta_data();
     let headers = meta.headers.as_slice();
-    let (width, height) = size(headers)?;
+    size(headers)?;
+    let (width, height) = headers.first().map_or(Ok((0, 0)), |h| extent(h, level))?;
     let provenance = claims(headers.iter().filter_map(claim).collect());
-    let mut picture = Picture::new(headers)?;
+    let mut picture = Picture::new(headers, level)?;
     for chunk in Chunks::new(bytes, headers).map_err(library)? {
         cancel.check()?;
         chunk.and_then(|c| picture.insert(&meta, c)).map_err(library)?;
@@ -112,6 +115,22 @@ fn size(headers: &[Header]) -> Result<(usize, usize), ReadError> {
     Ok((width, height))
 }
 
+/// Width and height of a level of a part.
+fn extent(header: &Header, level: usize) -> Result<(usize, usize), ReadError> {
+    let (width, height) = (header.layer_size.0, header.layer_size.1);
+    let (levels, rounding) = match header.blocks {
+        BlockDescription::Tiles(t) if t.level_mode == LevelMode::MipMap => {
+            (compute_level_count(t.rounding_mode, width.max(height).max(1)), Some(t.rounding_mode))
+        }
+        _ => (1, None),
+    };
+    if level >= levels {
+        return Err(no_level(FORMAT, level, levels));
+    }
+    let side = |n: usize| rounding.map_or(n, |r| compute_level_size(r, n, level));
+    Ok((side(width), side(height)))
+}
+
 fn utf8(text: &Text) -> String {
     String::from_utf8_lossy(text.as_slice()).into_owned()
 }
@@ -149,17 +168,19 @@ struct Picture {
     seen: BTreeSet<(usize, usize, usize)>,
     pixels_left: usize,
     width: usize,
+    level: usize,
 }
 
 impl Picture {
-    fn new(headers: &[Header]) -> Result<Picture, ReadError> {
+    fn new(headers: &[Header], level: usize) -> Result<Picture, ReadError> {
         let mut planes = Vec::<Plane>::new();
         let mut first = Vec::new();
         let (mut pixels_left, mut width) = (0, 0);
         for header in headers {
             first.push(planes.len());
-            width = header.layer_size.0;
-            pixels_left += width * header.layer_size.1;
+            let (own, height) = extent(header, level)?;
+            width = own;
+            pixels_left += width * height;
             let part = header.own_attributes.layer_name.as_ref().filter(|_| headers.len() > 1);
             for channel in &header.channels.list {
                 let name = utf8(&channel.name);
@@ -176,14 +197,14 @@ impl Picture {
             }
         }
         let (blocks, seen) = (Vec::new(), BTreeSet::new());
-        Ok(Picture { planes, first, blocks, seen, pixels_left, width })
+        Ok(Picture { planes, first, blocks, seen, pixels_left, width, level })
     }
 
     fn insert(&mut self, meta: &MetaData, chunk: Chunk) -> ExrResult<()> {
         let layer = chunk.layer_index;
         let header = meta.headers.get(layer).ok_or_else(|| invalid("a block of no part"))?;
         if let CompressedBlock::Tile(tile) = &chunk.compressed_block
-            && !tile.coordinates.is_largest_resolution_level()
+            && tile.coordinates.level_index != Vec2(self.level, self.level)
         {
             return Ok(());
         }
@@ -202,7 +223,7 @@ impl Picture {
     /// The planes, when every block is there.
     fn finish(mut self, headers: &[Header], cancel: &Cancel) -> ExrResult<Vec<Plane>> {
         for (layer, header) in headers.iter().enumerate() {
-            let area = header.layer_size.0 * header.layer_size.1;
+            let area = extent(header, self.level).map_or(0, |(w, h)| w * h);
             let planes = self.planes.iter_mut().skip(self.first[layer]);
             planes.take(header.channels.list.len()).for_each(|plane| plane.values = vec![0.0; area]);
         }

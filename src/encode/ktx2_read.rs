@@ -4,7 +4,7 @@
 
 use super::Storage;
 use super::ktx2::{SCHEME_ZSTD, storage};
-use super::read::{Claim, Image, MAX_SAMPLES, ReadError};
+use super::read::{Claim, Image, MAX_SAMPLES, ReadError, no_level};
 use super::stoppable::Stoppable;
 use super::texels;
 use crate::cancel::Cancel;
@@ -20,7 +20,7 @@ const MAX_TEXT: usize = 1 << 24;
 struct Raw {
     storage: Storage,
     components: usize,
-    /// Width, height, depth of the level, layers; 0 where there is none.
+    /// Width, height, depth, layers; 0 where there is none.
     extent: [usize; 4],
     /// The value of the key `brdfbake`; empty if there is none.
     provenance: String,
@@ -30,6 +30,11 @@ struct Raw {
 
 fn raw(bytes: &[u8], level: usize, cancel: &Cancel) -> Result<Raw, ReadError> {
     let format = word(bytes, 12)?;
+    if let Some(basis) = basis(bytes)? {
+        return Err(fault(format!(
+            "{basis} of Basis Universal (KHR_texture_basisu) is not decoded here; give the image as PNG, WebP, or as KTX2 without it"
+        )));
+    }
     let (storage, components) =
         storage(format).ok_or_else(|| fault(format!("VkFormat {format} is not supported")))?;
     let faces = word(bytes, 36)?;
@@ -40,13 +45,12 @@ fn raw(bytes: &[u8], level: usize, cancel: &Cancel) -> Result<Raw, ReadError> {
     for (n, at) in extent.iter_mut().zip([20, 24, 28, 32]) {
         *n = word(bytes, at)? as usize;
     }
-    let levels = word(bytes, 40)?.max(1) as usize;
-    if level >= levels.min(32) {
-        return Err(fault(format!("level {level} of {levels}")));
+    let levels = (word(bytes, 40)? as usize).max(1);
+    if level >= levels.min(31) {
+        return Err(no_level(FORMAT, level, levels));
     }
-    for n in extent[..3].iter_mut().filter(|n| **n > 0) {
-        *n = (*n >> level).max(1);
-    }
+    // layers have no levels; a side of 0 is none
+    extent.iter_mut().take(3).filter(|n| **n > 0).for_each(|n| *n = (*n >> level).max(1));
     let width = extent[0];
     let height = extent[1..].iter().fold(1usize, |height, n| height.saturating_mul((*n).max(1)));
     if width == 0 {
@@ -73,6 +77,21 @@ fn raw(bytes: &[u8], level: usize, cancel: &Cancel) -> Result<Raw, ReadError> {
     let text = value(keys, ATTRIBUTE.as_bytes()).filter(|t| t.len() <= MAX_TEXT).unwrap_or_default();
     let provenance = String::from_utf8_lossy(text.strip_suffix(&[0]).unwrap_or(text)).into_owned();
     Ok(Raw { storage, components, extent, provenance, pixels })
+}
+
+/// The coding of Basis Universal, if it is one: no Vulkan format, and the colour model of the descriptor (Khronos Data Format 1.3,
+/// section 5.6).
+fn basis(bytes: &[u8]) -> Result<Option<&'static str>, ReadError> {
+    if word(bytes, 12)? != 0 {
+        return Ok(None);
+    }
+    let start = word(bytes, 48)? as usize;
+    let model = start.checked_add(12).and_then(|at| bytes.get(at)).copied();
+    Ok(match (word(bytes, 44)?, model) {
+        (1, _) | (_, Some(163)) => Some("ETC1S"),
+        (_, Some(166)) => Some("UASTC"),
+        _ => None,
+    })
 }
 
 pub(super) fn read(bytes: &[u8], level: usize, cancel: &Cancel) -> Result<Image, ReadError> {

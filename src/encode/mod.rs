@@ -187,17 +187,14 @@ pub trait Encoder: Debug + Send + Sync {
         let _ = cancel;
         Err(ReadError::Unknown(bytes.iter().copied().take(8).collect()))
     }
-    /// Reads a level of a pyramid, the largest as 0. Containers of which only that is read refuse the others.
+    /// Reads a level of a file of all levels; 0 is the largest.
     ///
     /// # Errors
-    /// As [`Encoder::read`], and for a level that the file has not.
+    /// As [`Encoder::read`], and for a level that is not in the file.
     fn read_level(&self, bytes: &[u8], level: usize, cancel: &Cancel) -> Result<Image, ReadError> {
         match level {
             0 => self.read(bytes, cancel),
-            _ => Err(ReadError::Fault {
-                format: self.id(),
-                fault: "only its largest level is read".to_owned(),
-            }),
+            _ => Err(read::no_level(self.id(), level, 1)),
         }
     }
     /// Storages of pyramids (maps with levels) that it takes; none if it holds no pyramids.

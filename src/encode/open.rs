@@ -21,10 +21,10 @@ pub fn read_bytes_until(cancel: &Cancel, bytes: &[u8]) -> Result<Image, ReadErro
     read_level_until(cancel, bytes, 0)
 }
 
-/// A level of a pyramid in memory, the largest as 0.
+/// A level of a picture in memory, 0 the largest, until it is stopped. Containers with a file a level have one.
 ///
 /// # Errors
-/// As [`read_bytes_until`], and for a level that the file has not, or of a container of which only the largest is read.
+/// As [`read_bytes_until`]; [`ReadError::Fault`] for a level that the file does not have.
 pub fn read_level_until(cancel: &Cancel, bytes: &[u8], level: usize) -> Result<Image, ReadError> {
     let found = super::ENCODERS.iter().find(|e| e.magic().iter().any(|m| bytes.starts_with(m)));
     let read = match found {

@@ -183,6 +183,13 @@ impl Sample {
     }
 }
 
+/// A level that a file does not have.
+pub(super) fn no_level(format: &'static str, level: usize, levels: usize) -> ReadError {
+    let has =
+        if levels == 1 { "one level, 0".to_owned() } else { format!("levels 0 to {}", levels.max(1) - 1) };
+    ReadError::Fault { format, fault: format!("level {level} is not in the file, which has {has}") }
+}
+
 /// Count, extremes and mean of a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Statistics {

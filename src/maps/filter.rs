@@ -11,6 +11,7 @@ use super::lobe::{Facet, Lobe};
 use super::reflected;
 use super::rules::{Method, Rule};
 use super::surface::Surface;
+use super::two::Wide;
 use crate::cancel::{Cancel, Cancelled};
 use crate::picture::{Coverage, halved};
 use glam::DVec3;
@@ -106,6 +107,7 @@ fn given(surface: &Surface, i: usize) -> Texel {
         roughness,
         roughness_max,
         angle,
+        wide: [roughness, 0.0],
         distance: surface.residual.at(i),
         doubt: 0.0,
         at_limit: false,
@@ -123,6 +125,8 @@ pub struct Texel {
     pub roughness_max: f32,
     /// Direction of the larger width, rad from the tangent.
     pub angle: f32,
+    /// Of two lobes: √ of the width of the wide one, and its share.
+    pub wide: [f32; 2],
     /// D to the footprint.
     pub distance: f32,
     /// How far D may be wrong.
@@ -132,6 +136,13 @@ pub struct Texel {
 }
 
 impl Texel {
+    /// The wide lobe that is written beside it, where two are.
+    #[must_use]
+    pub fn second(&self) -> Wide {
+        let [r, share] = self.wide.map(f64::from);
+        Wide { alpha: r * r, share }
+    }
+
     /// The lobe that is written.
     #[must_use]
     pub fn lobe(&self) -> Lobe {
@@ -348,6 +359,7 @@ impl Job<'_> {
             roughness: lobe.alpha_min.sqrt() as f32,
             roughness_max: lobe.alpha_max.sqrt() as f32,
             angle: lobe.angle as f32,
+            wide: fitted.wide.map_or([0.0; 2], |w| [w.alpha.sqrt() as f32, w.share as f32]),
             distance: fitted.distance as f32,
             doubt: fitted.doubt as f32,
             at_limit: fitted.at_limit,

@@ -12,6 +12,7 @@ use super::descent::{self, Cost, Point};
 use super::footprint::Footprint;
 use super::lobe::{self, Facet, LEAST_ALPHA, Lobe};
 use super::nodes::{Lattice, Local, Nodes};
+use super::two::Wide;
 use glam::{DMat2, DVec2, DVec3};
 
 /// Where the normal of the lobe comes from.
@@ -30,6 +31,8 @@ pub enum Shape {
     Isotropic,
     /// Two, and a direction.
     Anisotropic,
+    /// One of each of two lobes: see [`two`](super::two).
+    Two,
 }
 
 /// How much work is spent on a texel.
@@ -44,8 +47,10 @@ pub enum Effort {
 /// A lobe with what is known of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fitted {
-    /// The lobe.
+    /// The lobe; of two the narrow one.
     pub lobe: Lobe,
+    /// The wide one beside it, where two were asked for.
+    pub wide: Option<Wide>,
     /// D between it and the footprint, as the nodes tell.
     pub distance: f64,
     /// How far the nodes may be wrong about D.
@@ -64,7 +69,7 @@ pub struct Fitter {
     pub(super) middle: Lattice,
     /// Of 256 nodes and more, each twice as many as the one before.
     pub(super) fine: Vec<Lattice>,
-    effort: Effort,
+    pub(super) effort: Effort,
 }
 
 /// The variables of a descent: logarithms of the widths against those of the start, shear, slopes of the normal.
@@ -83,7 +88,7 @@ impl Problem<'_> {
     /// Variables of the shape.
     const fn widths(&self) -> usize {
         match self.shape {
-            Shape::Isotropic => 1,
+            Shape::Isotropic | Shape::Two => 1,
             Shape::Anisotropic => 3,
         }
     }
@@ -91,7 +96,7 @@ impl Problem<'_> {
     fn local(&self, p: &Point) -> Local {
         let [a, b] = self.start;
         let shape = match self.shape {
-            Shape::Isotropic => {
+            Shape::Isotropic | Shape::Two => {
                 let l = libm::exp(p[0]) / a;
                 [l, 0.0, l]
             }
@@ -149,7 +154,7 @@ impl Cost for Problem<'_> {
         let (d, [l1, _, l3]) = (overlap.shape, local.shape);
         let mut slope = [0.0; descent::MOST];
         match self.shape {
-            Shape::Isotropic => slope[0] = -(d[0] + d[2]) * l1,
+            Shape::Isotropic | Shape::Two => slope[0] = -(d[0] + d[2]) * l1,
             Shape::Anisotropic => {
                 (slope[0], slope[1], slope[2]) = (-d[0] * l1, -d[2] * l3, -d[1] / self.start[1]);
             }
@@ -176,7 +181,7 @@ impl Cost for Problem<'_> {
     }
 
     fn hold(&self, mut at: Point) -> Point {
-        if self.shape == Shape::Isotropic {
+        if self.shape != Shape::Anisotropic {
             let a = self.start[0];
             at[0] = at[0].min(libm::log(a / self.least)).max(libm::log(a));
         }
@@ -209,12 +214,17 @@ impl Fitter {
         {
             let lobe = match shape {
                 Shape::Anisotropic => f.lobe(),
-                Shape::Isotropic => Lobe::isotropic(f.normal, f.alpha),
+                Shape::Isotropic | Shape::Two => Lobe::isotropic(f.normal, f.alpha),
             };
-            return Fitted { lobe, distance: 0.0, doubt: 0.0, at_limit: false };
+            let wide = (shape == Shape::Two).then_some(Wide { alpha: f.alpha, share: 0.0 });
+            return Fitted { lobe, wide, distance: 0.0, doubt: 0.0, at_limit: false };
         }
         let wide: Vec<Facet> = footprint.facets.iter().map(|f| f.wide(LEAST_ALPHA)).collect();
         let least = footprint.least.max(LEAST_ALPHA);
+        if shape == Shape::Two {
+            let single = self.fit(footprint, centre, Shape::Isotropic);
+            return self.two(footprint, &wide, single, centre);
+        }
         if self.effort == Effort::Fast && (centre, shape) == (Centre::Mean, Shape::Isotropic) {
             return self.round(footprint, &wide, least);
         }
@@ -240,7 +250,7 @@ impl Fitter {
             fitted = Some(found);
         }
         let (lobe, distance, doubt, at_limit) = fitted.unwrap_or((lobe, 1.0, 1.0, true));
-        Fitted { lobe, distance, doubt: doubt + footprint.merge_error, at_limit }
+        Fitted { lobe, wide: None, distance, doubt: doubt + footprint.merge_error, at_limit }
     }
 
     /// Which lattice: more nodes where narrow facets stand apart under a wide lobe.
@@ -316,7 +326,7 @@ impl Fitter {
     ) -> Vec<Start> {
         let round = |lobe: Lobe| match shape {
             Shape::Anisotropic => lobe.within(least, 1.0),
-            Shape::Isotropic => {
+            Shape::Isotropic | Shape::Two => {
                 Lobe::isotropic(lobe.normal, (lobe.alpha_max * lobe.alpha_min).sqrt()).within(least, 1.0)
             }
         };

@@ -18,6 +18,8 @@ pub mod sbrdf;
 pub mod signs;
 pub mod spec_gloss;
 pub mod surface;
+pub mod turned;
+pub mod two;
 
 pub use filter::{FilterError, Level, Objective, Settings, Texel, filter};
 pub use fit::{Centre, Effort, Fitted, Fitter, Shape};
@@ -25,3 +27,4 @@ pub use footprint::Footprint;
 pub use lobe::{Facet, Lobe};
 pub use rules::{RULES, Rule};
 pub use surface::{Convention, Field, Surface, TexelFault};
+pub use two::Wide;

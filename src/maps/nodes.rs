@@ -189,6 +189,32 @@ impl Nodes {
         (sum(&value), slope, doubt)
     }
 
+    /// ∫ min(truth, pair) of two lobes of the widths 1/l about a normal in the frame of the nodes, the second with its share; and how far
+    /// it can be trusted.
+    #[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]
+    pub(super) fn two(&self, normal: DVec3, l: [f64; 2], share: f64) -> (f64, f64) {
+        let [nx, ny, nz] = single(normal);
+        let squares = l.map(|l| (l * l) as f32);
+        let parts = [(1.0 - share) as f32 * squares[0] / PI, share as f32 * squares[1] / PI];
+        let mut value = [0f32; LANES];
+        let lists = [&self.x, &self.y, &self.z, &self.truth, &self.weight];
+        let [xs, ys, zs, ts, ws] = lists.map(|list| list.chunks_exact(LANES));
+        for ((((xs, ys), zs), ts), ws) in xs.zip(ys).zip(zs).zip(ts).zip(ws) {
+            for i in 0..LANES {
+                let c = nx * xs[i] + ny * ys[i] + nz * zs[i];
+                let cos2 = c * c;
+                let sin2 = 1.0 - cos2;
+                let (a, b) = (1.0 / (squares[0] * sin2 + cos2), 1.0 / (squares[1] * sin2 + cos2));
+                let density = c * (parts[0] * a * a + parts[1] * b * b);
+                let density = if density > 0.0 { density } else { 0.0 };
+                value[i] += ws[i] * if density < ts[i] { density } else { ts[i] };
+            }
+        }
+        let sum = value.iter().map(|v| f64::from(*v)).sum::<f64>();
+        let doubt = value.chunks_exact(2).map(|p| f64::from(p[0]) - f64::from(p[1])).sum::<f64>().abs();
+        (sum, doubt)
+    }
+
     /// The integral and its derivatives. Without `TURNS` the lobe stands in the frame of the nodes.
     #[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]
     pub(super) fn overlap<const TURNS: bool>(&self, lobe: &Local) -> Overlap {

@@ -51,6 +51,12 @@ impl Prepared {
         let alphas = [lobe.alpha_max.max(LEAST_ALPHA), lobe.alpha_min.max(LEAST_ALPHA)];
         Prepared { axes: lobe.axes(), alphas }
     }
+
+    /// The same lobe seen from the frame of these axes.
+    pub(super) fn within(&self, base: &[DVec3; 3]) -> Prepared {
+        let seen = |w: DVec3| DVec3::new(base[0].dot(w), base[1].dot(w), base[2].dot(w));
+        Prepared { axes: self.axes.map(seen), ..*self }
+    }
 }
 
 /// A view: its nodes, with solid angle and the footprint's reflected light.
@@ -123,7 +129,7 @@ fn mean(views: &[View], lobe: &Lobe) -> f64 {
 #[must_use]
 pub fn fit(footprint: &Footprint, start: &Lobe, centre: Centre, shape: Shape) -> Fitted {
     if footprint.is_constant() {
-        return Fitted { lobe: *start, distance: 0.0, doubt: 0.0, at_limit: false };
+        return Fitted { lobe: *start, wide: None, distance: 0.0, doubt: 0.0, at_limit: false };
     }
     let least = footprint.least.max(LEAST_ALPHA);
     let start = start.within(least, 1.0);
@@ -137,7 +143,7 @@ pub fn fit(footprint: &Footprint, start: &Lobe, centre: Centre, shape: Shape) ->
         } else {
             start.normal
         };
-        if shape == Shape::Isotropic {
+        if shape != Shape::Anisotropic {
             return Lobe::isotropic(normal, libm::exp(p[0]));
         }
         let half = (p[1] * p[1] + p[2] * p[2]).sqrt();
@@ -162,5 +168,5 @@ pub fn fit(footprint: &Footprint, start: &Lobe, centre: Centre, shape: Shape) ->
     let free = make(&found);
     let lobe = free.within(least, 1.0);
     let (distance, at_limit) = (mean(&views, &lobe), free.alpha_max >= 1.0 - 1e-4);
-    Fitted { lobe, distance, doubt: 0.0, at_limit }
+    Fitted { lobe, wide: None, distance, doubt: 0.0, at_limit }
 }

@@ -75,7 +75,7 @@ impl Fitter {
         let lobe = Lobe::isotropic(normal, libm::exp(best.log)).within(footprint.least.max(LEAST_ALPHA), 1.0);
         let at_limit = best.log >= high && best.slope < 0.0;
         let doubt = best.doubt + footprint.merge_error;
-        Fitted { lobe, distance: best.value, doubt, at_limit }
+        Fitted { lobe, wide: None, distance: best.value, doubt, at_limit }
     }
 }
 

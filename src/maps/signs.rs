@@ -93,6 +93,7 @@ mod tests {
             roughness: 0.3,
             roughness_max: 0.6,
             angle: angle(i % size[0], i / size[0]),
+            wide: [0.0; 2],
             distance: 0.0,
             doubt: 0.0,
             at_limit: false,

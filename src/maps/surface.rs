@@ -86,6 +86,9 @@ pub enum TexelFault {
         /// z of the unit normal.
         f64,
     ),
+    /// A strength without a direction.
+    #[error("the direction of the anisotropy has no length")]
+    NoDirection,
     /// A colour or a factor outside [0, 1].
     #[error("value {0} outside [0, 1]")]
     Code(
@@ -99,6 +102,9 @@ pub enum TexelFault {
         f64,
     ),
 }
+
+/// Shorter normals have no direction: the middle codes of 8 bits, 127 and 128, which stand for 0, make them up to 0.0068 long.
+const SHORTEST: f64 = 1e-2;
 
 impl Convention {
     /// The unit normal of the codes of a texel, each on [0, 1] for [−1, 1] (glTF 2.0, section 3.9.3).
@@ -117,7 +123,7 @@ impl Convention {
         let z = if self.derive_z { (1.0 - x * x - y * y).max(0.0).sqrt() } else { z };
         let raw = DVec3::new(x * self.scale, y * self.scale, z);
         let length = raw.length();
-        let fault = if length < 1e-3 {
+        let fault = if length < SHORTEST {
             TexelFault::NoLength
         } else if raw.z <= 1e-3 * length {
             TexelFault::Below(raw.z / length)
@@ -127,6 +133,43 @@ impl Convention {
         };
         if self.mend { Ok(Vec3::Z.to_array()) } else { Err(fault) }
     }
+}
+
+/// √ of the larger width of a facet of this roughness, and its direction in (−π/2, π/2] from the tangent, of the codes of
+/// `KHR_materials_anisotropy`: direction on [0, 1] for [−1, 1], and strength; `strength` is a factor of it, `rotation` a turn in rad.
+///
+/// α_t = α_b + (1 − α_b) s². Guard: where the strength is 0, the direction is not read.
+///
+/// # Errors
+/// [`TexelFault`] for codes that are no direction or no strength.
+#[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]
+pub fn stretch(
+    roughness: f32,
+    codes: [f32; 3],
+    strength: f64,
+    rotation: f64,
+) -> Result<[f32; 2], TexelFault> {
+    if codes.iter().any(|c| !c.is_finite()) {
+        return Err(TexelFault::NotFinite);
+    }
+    let [x, y, s] = codes.map(f64::from);
+    if !(0.0..=1.0).contains(&s) {
+        return Err(TexelFault::Code(s));
+    }
+    let s = s * strength;
+    if s <= 0.0 {
+        return Ok([roughness, 0.0]);
+    }
+    let (x, y) = (2.0 * x - 1.0, 2.0 * y - 1.0);
+    if x * x + y * y < 1e-6 {
+        return Err(TexelFault::NoDirection);
+    }
+    let alpha = f64::from(roughness) * f64::from(roughness);
+    let wide = alpha + (1.0 - alpha) * s * s;
+    let turns = (libm::atan2(y, x) + rotation) / std::f64::consts::PI;
+    // an axis has no sense: half a turn is none
+    let turns = turns - libm::ceil(turns - 0.5);
+    Ok([(wide.sqrt() as f32).max(roughness), (turns * std::f64::consts::PI) as f32])
 }
 
 /// Checks a roughness.
@@ -160,9 +203,26 @@ mod tests {
     }
 
     #[test]
+    fn strengths_and_directions_are_those_of_the_extension() {
+        // roughness 0.3, strength 0.6: alpha_t = 0.09 + 0.91 * 0.36
+        let [wide, angle] = stretch(0.3, [1.0, 0.5, 1.0], 0.6, 0.0).unwrap();
+        assert!((wide * wide - 0.4176).abs() < 1e-6 && angle.abs() < 1e-6, "{wide} {angle}");
+        let pi = std::f32::consts::PI;
+        let turned = |codes, rotation| stretch(0.3, codes, 1.0, rotation).unwrap()[1];
+        assert!((turned([0.5, 1.0, 1.0], 0.0) - 0.5 * pi).abs() < 1e-6);
+        assert!((turned([0.5, 1.0, 1.0], 0.25 * std::f64::consts::PI) + 0.25 * pi).abs() < 1e-6);
+        assert!((turned([0.0, 0.5, 1.0], 0.0)).abs() < 1e-6);
+        assert_eq!(stretch(0.3, [0.5, 0.5, 0.0], 1.0, 1.0), Ok([0.3, 0.0]));
+        assert_eq!(stretch(0.3, [0.5, 0.5, 1.0], 1.0, 1.0), Err(TexelFault::NoDirection));
+    }
+
+    #[test]
     fn what_is_no_normal_is_refused() {
         let convention = Convention::default();
-        assert_eq!(convention.decode([0.5, 0.5, 0.5]), Err(TexelFault::NoLength));
+        let middle = [127.0, 128.0, 128.0].map(|code: f32| code / 255.0);
+        for none in [[0.5; 3], middle, [128.0 / 255.0; 3]] {
+            assert_eq!(convention.decode(none), Err(TexelFault::NoLength));
+        }
         assert_eq!(convention.decode([f32::NAN, 0.5, 1.0]), Err(TexelFault::NotFinite));
         assert!(matches!(convention.decode([0.0, 0.0, 0.0]), Err(TexelFault::Below(_))));
         let mend = Convention { mend: true, ..convention };

@@ -59,7 +59,6 @@ pub fn codes<T>(
     allow: impl FnOnce(u64) -> Result<(), u64>,
     make: impl FnOnce(&Codes<'_>) -> T,
 ) -> Result<T, PictureError> {
-    let is_webp = bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP");
     let ask = |header: &Header| {
         if let Err(limit) = allow(header.needed) {
             let Header { width, height, needed } = *header;
@@ -67,7 +66,7 @@ pub fn codes<T>(
         }
         Ok(header.needed.saturating_add(SLACK))
     };
-    decode(bytes, named(bytes).or(is_webp.then_some("webp")), ask, |header, samples| {
+    decode(bytes, named(bytes), ask, |header, samples| {
         make(&Codes { size: [header.width as usize, header.height as usize], samples })
     })
 }

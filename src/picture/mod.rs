@@ -18,7 +18,7 @@ pub use covered::{CoverError, Covered};
 pub use levels::{Codes, Levels, codes, levels};
 pub(crate) use png::Png;
 pub use pyramid::{Coverage, count_levels, halved, shrink};
-pub use read::{MAGIC, facts, read_bytes, read_within};
+pub use read::{facts, is_picture, read_bytes, read_within};
 pub use resample::Wrap;
 pub use write::write_png;
 

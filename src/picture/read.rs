@@ -1,11 +1,17 @@
-//! PNG and JPEG, and WebP for its levels. The other containers are read by `encode`.
+//! PNG, JPEG and WebP. The other containers are read by `encode`.
 
 use super::png::Png;
 use super::{MAX_PIXELS, Picture, PictureError, Plane};
 use std::io::Cursor;
 
-/// How these files begin.
-pub const MAGIC: [(&[u8], &str); 2] = [(b"\x89PNG\r\n\x1a\n", "png"), (b"\xff\xd8\xff", "jpeg")];
+/// How these files begin; a WebP goes on with its length and `WEBP`.
+const MAGIC: [(&[u8], &str); 2] = [(b"\x89PNG\r\n\x1a\n", "png"), (b"\xff\xd8\xff", "jpeg")];
+
+/// Is it a file of a format that is read here?
+#[must_use]
+pub fn is_picture(bytes: &[u8]) -> bool {
+    named(bytes).is_some()
+}
 
 /// Most bytes that a decoder may take for rows, text and profiles.
 const MAX_ALLOC: u64 = 1 << 31;
@@ -13,7 +19,7 @@ const MAX_ALLOC: u64 = 1 << 31;
 /// Bytes beside the picture: rows, tables, text, profiles.
 pub(super) const SLACK: u64 = 32 << 20;
 
-/// Reads a PNG or JPEG image from memory. Profiles and gamma are left alone: samples are codes as they stand.
+/// Reads a PNG, JPEG or WebP image from memory. Profiles and gamma are left alone: samples are codes as they stand.
 ///
 /// # Errors
 /// [`PictureError`] for what is no sound image of at most [`MAX_PIXELS`].
@@ -37,7 +43,7 @@ pub fn read_within(bytes: &[u8], limit: u64) -> Result<Picture, PictureError> {
     decode(bytes, named(bytes), allow, planes)
 }
 
-/// Width and height of a PNG or JPEG image, and the names of its channels, from what stands before its pixels.
+/// Width and height of a PNG, JPEG or WebP image, and the names of its channels, from what stands before its pixels.
 ///
 /// # Errors
 /// [`PictureError::Unknown`] for another format, [`PictureError::Damaged`].
@@ -97,9 +103,11 @@ fn planes(header: &Header, samples: &Samples) -> Picture {
     Picture { width: header.width as usize, height: header.height as usize, planes }
 }
 
-/// The format of a PNG or JPEG image.
+/// The format of a PNG, JPEG or WebP image.
 pub(super) fn named(bytes: &[u8]) -> Option<&'static str> {
-    MAGIC.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, format)| *format)
+    let is_webp = bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP");
+    let found = MAGIC.iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, format)| *format);
+    found.or(is_webp.then_some("webp"))
 }
 
 /// What is known of an image before it is decoded.
@@ -173,8 +181,12 @@ mod library {
 
     /// Width and height, and the number of channels.
     pub(super) fn facts(bytes: &[u8], format: &'static str) -> Result<((u32, u32), usize), PictureError> {
-        let decoder = JpegDecoder::new(Cursor::new(bytes)).map_err(|e| damaged(format, &e))?;
-        Ok((decoder.dimensions(), usize::from(decoder.color_type().channel_count())))
+        let damaged = |e: ImageError| damaged(format, &e);
+        let told = |d: &dyn ImageDecoder| (d.dimensions(), usize::from(d.color_type().channel_count()));
+        Ok(match format {
+            "webp" => told(&WebPDecoder::new(Cursor::new(bytes)).map_err(damaged)?),
+            _ => told(&JpegDecoder::new(Cursor::new(bytes)).map_err(damaged)?),
+        })
     }
 
     pub(super) fn read(

@@ -14,7 +14,7 @@ const DECODED: u64 = 20;
 const SURFACE: u64 = 48;
 
 /// Bytes of a texel of the levels behind the first, a third of its number, and of the footprints that are kept of them.
-const LEVELS: u64 = 16 + 12;
+const LEVELS: u64 = 20 + 12;
 
 /// Bytes of a number of lobes: on all levels, with room for the roughness that they were fitted for.
 const LOBES: u64 = 6;

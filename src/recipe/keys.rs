@@ -2,6 +2,7 @@
 //! debug builds, where it reads one as something else; the schema ([`super::schema()`]) is written from the same lists.
 
 use super::ENGINES;
+pub(super) use super::sbrdf_keys::{COLOUR, NUMBER, SBRDF};
 use crate::encode::ENCODERS;
 use crate::encode::mips::containers;
 use crate::functions::conversion::CONVERSIONS;
@@ -9,7 +10,7 @@ use crate::grid::fit::Texels;
 use crate::grid::quantity::QUANTITIES;
 use crate::maps::RULES;
 use crate::models::MODELS;
-use crate::plan::map::{Packing, sbrdf, words};
+use crate::plan::map::{Packing, words};
 use crate::tables::TABLES;
 use crate::tables::driver::OnMiss;
 use crate::verify::LAWS;
@@ -75,7 +76,7 @@ pub(super) struct Keys {
 }
 
 impl Keys {
-    const fn new(name: &'static str, keys: &'static [Key]) -> Keys {
+    pub(super) const fn new(name: &'static str, keys: &'static [Key]) -> Keys {
         Keys { name, keys, free: &[], alone: false, without: None }
     }
 
@@ -93,11 +94,11 @@ impl Keys {
     }
 }
 
-const fn key(id: &'static str, is: Is, doc: &'static str) -> Key {
+pub(super) const fn key(id: &'static str, is: Is, doc: &'static str) -> Key {
     Key { id, is, need: Need::No, doc }
 }
 
-const fn needed(id: &'static str, is: Is, example: &'static str, doc: &'static str) -> Key {
+pub(super) const fn needed(id: &'static str, is: Is, example: &'static str, doc: &'static str) -> Key {
     Key { id, is, need: Need::Always(example), doc }
 }
 
@@ -261,12 +262,13 @@ pub(super) static MAP: Keys = Keys::new(
             Is::Any(&[Is::Number, Is::Text, Is::Section(&ROUGHNESS)]),
             "A number, an image, or an image and how it is read.",
         ),
+        key("anisotropy", Is::Section(&ANISOTROPY), "Facets of two widths, as KHR_materials_anisotropy."),
         key("sbrdf", Is::Section(&SBRDF), "Lobes at each texel, in place of the roughness."),
         key("packing", Is::Word(|| ids(&Packing::ALL)), "Channels that are written with the roughness."),
         key("factor", Is::Number, "Factor of the roughness."),
         key("rule", Is::Word(|| RULES.iter().map(|r| r.id).collect()), "Filter rule."),
         key("normals", Is::Word(|| ids(&words::CENTRES)), "What the lobes stand about."),
-        key("shape", Is::Word(|| ids(&words::SHAPES)), "One width, or two and a direction."),
+        key("shape", Is::Word(|| ids(&words::SHAPES)), "One width, two and a direction, or two lobes."),
         key("effort", Is::Word(|| ids(&words::EFFORTS)), "Fast, or every facet."),
         key("objective", Is::Word(|| ids(&words::OBJECTIVES)), "What the fit makes small."),
         key("outputs", Is::List(&Is::Form(map_outputs), [0, 64]), "Containers, with storages or not."),
@@ -275,8 +277,19 @@ pub(super) static MAP: Keys = Keys::new(
     ],
 );
 
-const FILE: Key =
+pub(super) const FILE: Key =
     needed("file", Is::Text, "file = \"bark.png\"", "The image, relative to the folder of the recipe.");
+
+/// Facets of two widths.
+pub(super) static ANISOTROPY: Keys = Keys::new(
+    "anisotropy",
+    &[
+        key("file", Is::Text, "Direction in R and G, strength in B, relative to the folder of the recipe."),
+        key("strength", Is::Number, "Factor of the strength."),
+        key("rotation", Is::Number, "Turn of the direction in radians, against the clock."),
+        key("resample", SWITCH, "Bring the smaller images to the largest size."),
+    ],
+);
 
 /// How a normal map is read.
 pub(super) static NORMAL: Keys = Keys::new(
@@ -323,34 +336,7 @@ pub(super) static FROM: Keys = Keys::new(
     ],
 );
 
-/// Lobes at each texel.
-pub(super) static SBRDF: Keys = Keys::new(
-    "sbrdf",
-    &[
-        needed("model", Is::Word(|| vec![sbrdf::MODEL]), "model = \"lafortune\"", "The model of a lobe."),
-        key("lobes", Is::Count, "Lobes of a texel, 1 to 3."),
-        key("residual", Is::Number, "Fit fewer lobes if the relative residual stays below this."),
-        key("normalise", Is::Word(|| ids(&words::NORMALISE)), "What a lobe is divided by."),
-        key(sbrdf::BASE, Is::Any(COLOURS), "Linear base colour, or an image of it."),
-        key(sbrdf::METALLIC, Is::Any(NUMBERS), "A number, or an image."),
-        key(sbrdf::BRDF, Is::Text, "A tabulated BRDF in place of the maps."),
-    ],
-);
-
-static COLOURS: &[Is] = &[Is::Number, Is::Text, Is::List(&Is::Number, [3, 3]), Is::Section(&COLOUR)];
-static NUMBERS: &[Is] = &[Is::Number, Is::Text, Is::Section(&NUMBER)];
-
-/// How an image of colours is read.
-pub(super) static COLOUR: Keys = Keys::new(
-    sbrdf::BASE,
-    &[FILE, key("space", Is::Word(|| ids(&words::SPACES)), "How the codes are spread.")],
-);
-
-/// How an image of a number is read.
-pub(super) static NUMBER: Keys =
-    Keys::new(sbrdf::METALLIC, &[FILE, key("channel", Is::Text, "Its channel.")]);
-
-fn ids<T>(list: &[(&'static str, T)]) -> Vec<&'static str> {
+pub(super) fn ids<T>(list: &[(&'static str, T)]) -> Vec<&'static str> {
     list.iter().map(|(word, _)| *word).collect()
 }
 

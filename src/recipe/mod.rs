@@ -122,6 +122,7 @@ mod read_axis;
 mod read_map;
 mod read_sbrdf;
 mod read_size;
+mod sbrdf_keys;
 mod schema;
 mod section;
 mod span;

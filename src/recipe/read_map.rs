@@ -1,6 +1,6 @@
 //! `[[map]]`: the keys of a map, each of its type. What they mean together is judged by the plan.
 
-use super::keys::{FROM, MAP, NORMAL, ROUGHNESS};
+use super::keys::{ANISOTROPY, FROM, MAP, NORMAL, ROUGHNESS};
 use super::read_sbrdf;
 use super::section::{Section, as_number, wrong};
 use crate::functions::conversion::{By, CONVERSIONS, Conversion};
@@ -10,7 +10,8 @@ use crate::plan::Path;
 use crate::plan::fault::{Fault, unknown_word};
 use crate::plan::faults::Faults;
 use crate::plan::map::{
-    FromLobe, Input, MapDraft, MapRequest, Output, Packing, RoughnessInput, Second, Source, words,
+    AnisotropyInput, FromLobe, Input, MapDraft, MapRequest, Output, Packing, RoughnessInput, Second, Source,
+    words,
 };
 use std::path::Path as File;
 use toml::de::{DeTable, DeValue};
@@ -52,6 +53,9 @@ pub(super) fn read(table: &DeTable<'_>, path: &Path, folder: &File, faults: &mut
     set(&mut filter.shape, section.word("shape", &words::SHAPES, faults));
     set(&mut filter.effort, section.word("effort", &words::EFFORTS, faults));
     set(&mut filter.objective, section.word("objective", &words::OBJECTIVES, faults));
+    if let Some(value) = section.get("anisotropy") {
+        request.anisotropy = anisotropy(value, &section.path("anisotropy"), folder, faults);
+    }
     if let Some(value) = section.get("sbrdf") {
         request.sbrdf = read_sbrdf::sbrdf(value, &section.path("sbrdf"), folder, faults);
     }
@@ -115,6 +119,26 @@ fn normal(value: &DeValue<'_>, path: &Path, folder: &File, faults: &mut Faults) 
             }
         }
     }
+    Some(input)
+}
+
+fn anisotropy(
+    value: &DeValue<'_>,
+    path: &Path,
+    folder: &File,
+    faults: &mut Faults,
+) -> Option<AnisotropyInput> {
+    let Some(table) = value.as_table() else {
+        let expected = "a table, such as { file = \"direction.png\", strength = 1.0 }";
+        faults.value(path.clone(), wrong("anisotropy", value, expected));
+        return None;
+    };
+    let section = Section::new(table, path, &ANISOTROPY, faults);
+    let image = section.text("file", faults).map(|name| Source::File(folder.join(name)));
+    let mut input = AnisotropyInput { image, ..AnisotropyInput::default() };
+    set(&mut input.strength, section.number("strength", faults));
+    set(&mut input.rotation, section.number("rotation", faults));
+    set(&mut input.resample, section.word("resample", &SWITCH, faults));
     Some(input)
 }
 

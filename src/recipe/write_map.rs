@@ -4,7 +4,8 @@ use crate::maps::Convention;
 use crate::picture::{Space, Wrap};
 use crate::plan::map::sbrdf::{BASE, BRDF, ColourInput, METALLIC, MODEL, NumberInput, Origin};
 use crate::plan::map::{
-    FromLobe, Input, MapRequest, Packing, RoughnessInput, SbrdfRequest, Second, Source, words,
+    AnisotropyInput, FromLobe, Input, MapRequest, Packing, RoughnessInput, SbrdfRequest, Second, Source,
+    words,
 };
 use serde_json::{Map, Value as Json, json};
 
@@ -20,6 +21,13 @@ pub(super) fn map(request: &MapRequest) -> Option<Keys> {
         put("normal", normal(input)?);
     }
     put("roughness", roughness(&request.roughness)?);
+    if let Some(AnisotropyInput { image, strength, rotation, wrap: _, resample }) = &request.anisotropy {
+        let mut own = json!({ "strength": strength, "rotation": rotation, "resample": switch(*resample) });
+        if let Some(image) = image {
+            own["file"] = file(image)?;
+        }
+        put("anisotropy", own);
+    }
     if let Some(lobes) = &request.sbrdf {
         put("sbrdf", sbrdf(lobes)?);
     }

@@ -75,7 +75,12 @@ fn lobes(lines: &mut Lines, json: &Value) {
     lines.item("SBRDF", &format!("{} lobes of Lafortune, {normalise} integral, {way}", json["lobes"]));
     for (k, level) in json["levels"].as_array().into_iter().flatten().enumerate() {
         let (mean, largest) = (number(&level["mean"]), number(&level["largest"]));
-        lines.item("", &format!("level {k}: residual mean {mean:.4}, largest {largest:.4}"));
+        let mut text = format!("level {k}: residual mean {mean:.4}, largest {largest:.4}");
+        if let Some(m) = level.get("measured") {
+            let (own, refit) = (number(&m["mean"]), number(&m["refit"]));
+            text += &format!("; against the footprints {own:.4}, refit {refit:.4}");
+        }
+        lines.item("", &text);
     }
     let storage = &json["storage"];
     lines.item(

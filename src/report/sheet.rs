@@ -125,6 +125,8 @@ fn histogram(plane: &Plane) -> Tile {
 struct Pictured {
     facets: Vec<Facet>,
     lobe: Lobe,
+    /// The wide lobe beside it: width and share.
+    wide: Option<[f64; 2]>,
 }
 
 /// The worst texels that a file tells of.
@@ -152,9 +154,13 @@ fn told(json: &Value) -> Vec<(String, Pictured)> {
         let facets: Vec<Facet> = v["facets"].as_array()?.iter().filter_map(facet).collect();
         let [x, y, z, alpha_max, alpha_min, angle] = numbers(&v["lobe"])[..] else { return None };
         let normal = DVec3::new(x, y, z).try_normalize()?;
+        let wide = match numbers(&v["wide"])[..] {
+            [alpha, share] => Some([alpha, share]),
+            _ => None,
+        };
         let whole = |key: &str| v[key].as_u64().unwrap_or(0);
         let name = format!("level {} ({}, {})", whole("level"), whole("x"), whole("y"));
-        Some((name, Pictured { facets, lobe: Lobe { normal, alpha_max, alpha_min, angle } }))
+        Some((name, Pictured { facets, lobe: Lobe { normal, alpha_max, alpha_min, angle }, wide }))
     };
     json["pictured"].as_array().into_iter().flatten().filter_map(one).collect()
 }
@@ -176,7 +182,11 @@ fn sphere(worst: &Pictured) -> Tile {
         let radiance = if x < 0.0 {
             worst.facets.iter().map(|f| f.weight * reflected::light(&f.lobe(), v, l)).sum()
         } else {
-            reflected::light(&worst.lobe, v, l)
+            let narrow = reflected::light(&worst.lobe, v, l);
+            worst.wide.map_or(narrow, |[alpha, share]| {
+                let wide = reflected::light(&Lobe::isotropic(worst.lobe.normal, alpha), v, l);
+                (1.0 - share) * narrow + share * wide
+            })
         };
         [byte(Space::Srgb.encode(radiance / (1.0 + radiance))); 3]
     };

@@ -50,7 +50,7 @@ pub(super) fn scene(tree: &Value, bin: Option<&[u8]>, limits: &Limits) -> Result
     scene.warnings = declaration_warnings(&scene);
     let shaded = scene.materials.iter().filter(|m| m.used && m.lit);
     let wanted: BTreeSet<usize> = if limits.maps {
-        let textures = shaded.flat_map(|m| [&m.maps.normal, &m.maps.roughness]);
+        let textures = shaded.flat_map(|m| [&m.maps.normal, &m.maps.roughness, &m.maps.anisotropy]);
         textures.flatten().filter_map(|t| t.image).collect()
     } else {
         shaded.flat_map(|m| m.sampled(limits.colours)).filter_map(|s| s.image).collect()

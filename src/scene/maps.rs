@@ -27,15 +27,29 @@ pub struct Maps {
     pub normal: Option<MapTexture>,
     /// `metallicRoughnessTexture`.
     pub roughness: Option<MapTexture>,
+    /// `anisotropyTexture` of `KHR_materials_anisotropy`.
+    pub anisotropy: Option<MapTexture>,
+    /// `anisotropyRotation`, in rad.
+    pub rotation: f64,
     /// `normalTexture.scale`.
     pub scale: f64,
     /// Is that scale animated?
     pub moves: bool,
+    /// Is that rotation animated?
+    pub turns: bool,
 }
 
 impl Default for Maps {
     fn default() -> Maps {
-        Maps { normal: None, roughness: None, scale: 1.0, moves: false }
+        Maps {
+            normal: None,
+            roughness: None,
+            anisotropy: None,
+            rotation: 0.0,
+            scale: 1.0,
+            moves: false,
+            turns: false,
+        }
     }
 }
 
@@ -44,9 +58,18 @@ const ANY: Allowed = Allowed { lo: f64::MIN, hi: f64::MAX, also: None, text: "an
 
 pub(super) const TRANSFORM: &str = "KHR_texture_transform";
 
+const ANISOTROPY: &str = "KHR_materials_anisotropy";
+
 /// Reads them.
 pub(super) fn read(node: &Node<'_>, textures: &[Texture], animated: &Animated) -> Result<Maps, Fault> {
     let mut maps = Maps { moves: animated.contains("normalTexture/scale"), ..Maps::default() };
+    if let Some(extensions) = node.get("extensions")?
+        && let Some(own) = extensions.get(ANISOTROPY)?
+    {
+        maps.turns = animated.contains(&format!("extensions/{ANISOTROPY}/anisotropyRotation"));
+        maps.rotation = own.factor("anisotropyRotation", 0.0, &ANY)?;
+        maps.anisotropy = own.get("anisotropyTexture")?.map(|info| texture(&info, textures)).transpose()?;
+    }
     if let Some(info) = node.get("normalTexture")? {
         maps.scale = info.factor("scale", 1.0, &ANY)?;
         maps.normal = Some(texture(&info, textures)?);
@@ -85,17 +108,31 @@ pub(super) fn placed(info: &Node<'_>) -> Result<(u64, [f64; 5]), Fault> {
     Ok((tex_coord, transform))
 }
 
+/// How two textures are read differently, in words.
+fn differ((first, n): (&str, &MapTexture), (second, r): (&str, &MapTexture)) -> Option<String> {
+    let told = |what: &str, a: String, b: String| Some(format!("{first} has {what} {a}, and {second} {b}"));
+    if n.tex_coord != r.tex_coord {
+        return told("UV set", n.tex_coord.to_string(), r.tex_coord.to_string());
+    }
+    if n.transform.map(f64::to_bits) != r.transform.map(f64::to_bits) {
+        return told(TRANSFORM, format!("{:?}", n.transform), format!("{:?}", r.transform));
+    }
+    (n.wrap != r.wrap).then(|| told("wrap", format!("{:?}", n.wrap), format!("{:?}", r.wrap)))?
+}
+
 impl Material {
     /// Does the material have textures that filtered maps can be made of?
     #[must_use]
     pub fn has_maps(&self) -> bool {
-        !self.is_unlit() && (self.maps.normal.is_some() || self.maps.roughness.is_some())
+        let Maps { normal, roughness, anisotropy, .. } = &self.maps;
+        let stretched = anisotropy.is_some() && self.stretch() > 0.0;
+        !self.is_unlit() && (normal.is_some() || roughness.is_some() || stretched)
     }
 
     /// What keeps its textures from being filtered, if anything.
     #[must_use]
     pub fn bars_maps(&self) -> Option<String> {
-        let Maps { normal, roughness, moves, .. } = &self.maps;
+        let Maps { normal, roughness, anisotropy, moves, turns, .. } = &self.maps;
         let on = |name: &str| self.extension(name).is_some();
         let animated = self.property("", "roughnessFactor").is_some_and(|p| p.animated);
         if on("KHR_materials_pbrSpecularGlossiness") && !self.metallic_roughness {
@@ -106,31 +143,30 @@ impl Material {
         if self.extensions.iter().any(|e| e.name.starts_with("MSFT_packing")) {
             return Some("its roughness is in a texture of another packing".to_owned());
         }
-        let strength = self.property("KHR_materials_anisotropy", "anisotropyStrength");
-        if strength.is_some_and(|p| p.animated || p.factor[1] > 0.0) {
-            return Some(
-                "its facets are anisotropic (KHR_materials_anisotropy), and isotropic ones are filtered"
-                    .to_owned(),
-            );
+        let strength = self.property(ANISOTROPY, "anisotropyStrength");
+        if strength.is_some_and(|p| p.animated) || (*turns && self.stretch() > 0.0) {
+            let what = if *turns { "the rotation" } else { "the strength" };
+            return Some(format!("{what} of its anisotropy is animated, and a map stands for one value"));
         }
         if animated || *moves {
             let what = if animated { "roughnessFactor" } else { "the scale of its normals" };
             return Some(format!("{what} is animated, and a map stands for one value"));
         }
-        let (Some(n), Some(r)) = (normal, roughness) else { return None };
-        let differ = |what: &str, a: String, b: String| {
-            Some(format!("normalTexture has {what} {a}, and metallicRoughnessTexture {b}"))
-        };
-        if n.tex_coord != r.tex_coord {
-            return differ("UV set", n.tex_coord.to_string(), r.tex_coord.to_string());
-        }
-        if n.transform.map(f64::to_bits) != r.transform.map(f64::to_bits) {
-            return differ(TRANSFORM, format!("{:?}", n.transform), format!("{:?}", r.transform));
-        }
-        if n.wrap != r.wrap {
-            return differ("wrap", format!("{:?}", n.wrap), format!("{:?}", r.wrap));
-        }
-        None
+        let stretched = anisotropy.as_ref().filter(|_| self.stretch() > 0.0);
+        let all = [
+            ("normalTexture", normal.as_ref()),
+            ("metallicRoughnessTexture", roughness.as_ref()),
+            ("anisotropyTexture", stretched),
+        ];
+        let mut read = all.into_iter().filter_map(|(name, texture)| Some((name, texture?)));
+        let (first, n) = read.next()?;
+        read.find_map(|(second, r)| differ((first, n), (second, r)))
+    }
+
+    /// The strength of its anisotropy, a factor of that of its texture; 0 without one.
+    #[must_use]
+    pub fn stretch(&self) -> f64 {
+        self.property(ANISOTROPY, "anisotropyStrength").map_or(0.0, |p| p.factor[1].clamp(UNIT.lo, UNIT.hi))
     }
 
     /// Will filtered maps widen its roughness? Lobes stand for the normals of a footprint where there is a normal map.

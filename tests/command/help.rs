@@ -21,6 +21,7 @@ fn prepared(dir: &Path) {
     for to in ["textures", "others", "golden"] {
         run(dir, &["bake", "mine.toml", "--quiet", "-o", to]);
     }
+    run(dir, &["map", "--normal", "normal.png", "--roughness", "0.4", "--quiet", "-o", "maps"]);
     write(&dir.join("golden"), "recipe.toml", SMALL);
     for to in ["a.exr", "b.exr"] {
         std::fs::copy(dir.join("textures/small.exr"), dir.join(to)).unwrap();

@@ -268,9 +268,7 @@ fn maps_are_shown_with_their_errors_and_worst_texels() {
                 || of_bake.contains("error: distance: 0 everywhere")
         );
         let level = format!("alt=\"error: distance, level {}: from ", worst["level"]);
-        // of EXR the first level is read, and the page says so
-        assert_eq!(of_bake.contains(&level), name != "exr", "{name}");
-        assert_eq!(of_bake.contains("only its largest level is read"), name == "exr", "{name}");
+        assert!(of_bake.contains(&level), "{name}");
         said.push(of_bake.split(&told).nth(1).unwrap()[..6].to_owned());
     }
     // whatever the container

@@ -75,7 +75,7 @@ impl Rule {
         let free = formula(footprint);
         let lobe = free.within(footprint.least, 1.0);
         let (distance, doubt) = fitter.distance(&lobe, footprint);
-        Fitted { lobe, distance, doubt, at_limit: free.alpha_max > 1.0 }
+        Fitted { lobe, wide: None, distance, doubt, at_limit: free.alpha_max > 1.0 }
     }
 }
 

@@ -4,7 +4,8 @@
 //! f = F0 · D V (1 − s) + D V s + c (1 − F0) (1 − s)/π, F0 and c (the diffuse colour) of glTF 2.0 Appendix B. Albedos are fitted to each of the
 //! three terms; the shapes follow their mixture for the mean colour of the map. Nodes lie evenly along the roughness, each begun from
 //! the one before, from the smoothest on. Between nodes ψ, ln n and the albedos are read linearly; what that costs is measured half way
-//! between the nodes and is part of every residual.
+//! between the nodes and is part of every residual. Of two widths the nodes are a grid: [`STRETCHED`] roughnesses, and as many strengths of the
+//! anisotropy of glTF, each begun from the one before.
 
 use super::super::lobe::{LEAST_ALPHA, Lobe};
 use super::super::reflected::{Prepared, reflected};
@@ -22,6 +23,9 @@ pub const TERMS: usize = 3;
 /// Nodes along the roughness.
 pub const NODES: usize = 33;
 
+/// Nodes along the roughness and along the strength, of two widths.
+pub const STRETCHED: [usize; 2] = [9, 5];
+
 /// Steps of a fit that begins from nothing, and from its neighbour.
 const STEPS: [usize; 2] = [60, 25];
 
@@ -35,8 +39,20 @@ pub fn mixture(f0: f64, diffuse: f64) -> [f64; TERMS] {
 #[must_use]
 pub fn problem(roughness: f64, mean: [f64; TERMS], normalise: Normalise) -> Problem {
     let alpha = (roughness * roughness).max(LEAST_ALPHA);
-    let directions = Directions::new(alpha);
-    let lobe = Prepared::new(&Lobe::isotropic(DVec3::Z, alpha));
+    terms(&Lobe::isotropic(DVec3::Z, alpha), Directions::new(alpha), mean, normalise)
+}
+
+/// The same of two widths, the larger one along x: α_max = α_min + (1 − α_min) strength².
+#[must_use]
+pub fn stretched(roughness: f64, strength: f64, mean: [f64; TERMS], normalise: Normalise) -> Problem {
+    let alpha_min = (roughness * roughness).max(LEAST_ALPHA);
+    let alpha_max = alpha_min + (1.0 - alpha_min) * strength * strength;
+    let lobe = Lobe { normal: DVec3::Z, alpha_max, alpha_min, angle: 0.0 };
+    terms(&lobe, Directions::stretched([alpha_max, alpha_min]), mean, normalise)
+}
+
+fn terms(lobe: &Lobe, directions: Directions, mean: [f64; TERMS], normalise: Normalise) -> Problem {
+    let lobe = Prepared::new(lobe);
     let schlick = |i: DVec3, o: DVec3| {
         let x = 1.0 - i.dot((i + o).normalize());
         x * x * x * x * x
@@ -50,14 +66,48 @@ pub fn problem(roughness: f64, mean: [f64; TERMS], normalise: Normalise) -> Prob
     Problem::new(directions, &targets, &mean, normalise)
 }
 
-/// Fits along the roughness.
+/// Nodes along a range.
+#[derive(Debug, Clone, Copy)]
+struct Along {
+    range: [f64; 2],
+    nodes: usize,
+}
+
+impl Along {
+    fn at(self, place: f64) -> f64 {
+        self.range[0] + (self.range[1] - self.range[0]) * place / (self.nodes.max(2) - 1) as f64
+    }
+
+    fn node(self, m: usize) -> f64 {
+        self.at(m as f64)
+    }
+
+    /// Where the fit of a node of the roughness begins, and for how many steps: at the fit of the node before.
+    fn begin(self, m: usize, before: Option<&Vec<Shape>>, lobes: usize) -> (Vec<Shape>, usize) {
+        let alpha = |m: usize| (self.node(m) * self.node(m)).max(LEAST_ALPHA);
+        match before {
+            None => (start(alpha(m), lobes.clamp(1, MOST_LOBES)), STEPS[0]),
+            Some(last) => {
+                let sharper = 2.0 * libm::log(alpha(m - 1) / alpha(m));
+                (last.iter().map(|s| Shape { log: s.log + sharper, ..*s }).collect(), STEPS[1])
+            }
+        }
+    }
+}
+
+/// Fits along the roughness, and of two widths along the strength too.
 #[derive(Debug, Clone)]
 pub struct Curve {
     range: [f64; 2],
+    /// Largest strength; 0 of one width.
+    strength: f64,
+    /// Nodes along the roughness.
+    across: usize,
+    /// `[strength][roughness]`.
     fits: Vec<Fit>,
     /// Most that reading between nodes adds to a residual.
     pub between: f64,
-    /// What it adds behind each node.
+    /// What it adds behind each node, `[strength][roughness]`, of cells.
     lost: Vec<f64>,
     /// The mixture that the shapes were fitted to.
     pub mean: [f64; TERMS],
@@ -97,34 +147,82 @@ impl Curve {
         normalise: Normalise,
         cancel: &Cancel,
     ) -> Result<Curve, Cancelled> {
-        let count = if range[1] > range[0] { NODES } else { 1 };
-        let at = |m: f64| range[0] + (range[1] - range[0]) * m / (count.max(2) - 1) as f64;
+        let at = Along { range, nodes: if range[1] > range[0] { NODES } else { 1 } };
         let problems: Vec<Problem> =
-            (0..count).into_par_iter().map(|m| problem(at(m as f64), mean, normalise)).collect();
-        let mut shapes: Vec<Vec<Shape>> = Vec::with_capacity(count);
+            (0..at.nodes).into_par_iter().map(|m| problem(at.node(m), mean, normalise)).collect();
+        let mut shapes: Vec<Vec<Shape>> = Vec::with_capacity(at.nodes);
         for (m, problem) in problems.iter().enumerate() {
             cancel.check()?;
-            let alpha = |m: usize| (at(m as f64) * at(m as f64)).max(LEAST_ALPHA);
-            let (first, steps) = match shapes.last() {
-                None => (start(alpha(m), lobes.clamp(1, MOST_LOBES)), STEPS[0]),
-                Some(last) => {
-                    let sharper = 2.0 * libm::log(alpha(m - 1) / alpha(m));
-                    (last.iter().map(|s| Shape { log: s.log + sharper, ..*s }).collect(), STEPS[1])
-                }
-            };
+            let (first, steps) = at.begin(m, shapes.last(), lobes);
             shapes.push(problem.descend(&first, steps));
         }
-        let fits: Vec<Fit> = problems.par_iter().zip(&shapes).map(|(p, s)| p.finish(s)).collect();
-        let mut curve = Curve { range, fits, between: 0.0, lost: Vec::new(), mean };
-        let lost = |m: usize| {
-            let r = at(m as f64 + 0.5);
-            let (shapes, albedos, told) = curve.read(r, &mean);
-            problem(r, mean, normalise).residual(&shapes, &albedos, &mean) - told
+        let fits = problems.par_iter().zip(&shapes).map(|(p, s)| p.finish(s)).collect();
+        let curve =
+            Curve { range, strength: 0.0, across: at.nodes, fits, between: 0.0, lost: Vec::new(), mean };
+        Ok(curve.judged(|r, _| problem(r, mean, normalise)))
+    }
+
+    /// The same of two widths, for strengths up to `strength`: see [`stretched`].
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn stretched(
+        range: [f64; 2],
+        strength: f64,
+        mean: [f64; TERMS],
+        lobes: usize,
+        normalise: Normalise,
+        cancel: &Cancel,
+    ) -> Result<Curve, Cancelled> {
+        let at = Along { range, nodes: if range[1] > range[0] { STRETCHED[0] } else { 1 } };
+        let up = Along { range: [0.0, strength], nodes: if strength > 0.0 { STRETCHED[1] } else { 1 } };
+        let make = |m: usize, k: usize| stretched(at.node(m), up.node(k), mean, normalise);
+        let mut shapes: Vec<Vec<Shape>> = Vec::with_capacity(at.nodes);
+        for m in 0..at.nodes {
+            cancel.check()?;
+            let (first, steps) = at.begin(m, shapes.last(), lobes);
+            shapes.push(make(m, 0).descend(&first, steps));
+        }
+        // each roughness goes up along the strength by itself
+        let column = |m: usize| -> Result<Vec<Fit>, Cancelled> {
+            let mut own = shapes[m].clone();
+            let mut fits = Vec::with_capacity(up.nodes);
+            for k in 0..up.nodes {
+                cancel.check()?;
+                let problem = make(m, k);
+                own = problem.descend(&own, STEPS[1]);
+                fits.push(problem.finish(&own));
+            }
+            Ok(fits)
         };
-        let lost: Vec<f64> = (0..count - 1).into_par_iter().map(lost).map(|l| l.max(0.0)).collect();
-        curve.between = lost.iter().copied().fold(0.0, f64::max);
-        curve.lost = lost;
-        Ok(curve)
+        let columns: Vec<Vec<Fit>> = (0..at.nodes).into_par_iter().map(column).collect::<Result<_, _>>()?;
+        let fits = (0..up.nodes).flat_map(|k| columns.iter().map(move |c| c[k].clone())).collect();
+        let curve = Curve { range, strength, across: at.nodes, fits, between: 0.0, lost: Vec::new(), mean };
+        Ok(curve.judged(|r, s| stretched(r, s, mean, normalise)))
+    }
+
+    /// With what reading between nodes costs, in the middle of every cell.
+    fn judged(mut self, problem: impl Fn(f64, f64) -> Problem + Sync) -> Curve {
+        let (across, up) = self.cells();
+        let along = Along { range: self.range, nodes: self.across };
+        let strengths = Along { range: [0.0, self.strength], nodes: self.fits.len() / self.across };
+        let lost = |cell: usize| {
+            let half = |count: usize, n: usize| if count > 0 { n as f64 + 0.5 } else { 0.0 };
+            let (m, k) = (cell % across.max(1), cell / across.max(1));
+            let (r, s) = (along.at(half(across, m)), strengths.at(half(up, k)));
+            let (shapes, albedos, told) = self.read([r, s], &self.mean);
+            problem(r, s).residual(&shapes, &albedos, &self.mean) - told
+        };
+        let count = if across + up > 0 { across.max(1) * up.max(1) } else { 0 };
+        let lost: Vec<f64> = (0..count).into_par_iter().map(lost).map(|l| l.max(0.0)).collect();
+        self.between = lost.iter().copied().fold(0.0, f64::max);
+        self.lost = lost;
+        self
+    }
+
+    /// Cells along the roughness and along the strength.
+    fn cells(&self) -> (usize, usize) {
+        (self.across - 1, self.fits.len() / self.across - 1)
     }
 
     /// How many lobes there are.
@@ -133,43 +231,70 @@ impl Curve {
         self.fits.first().map_or(0, |f| f.shapes.len())
     }
 
-    /// The node before a roughness, and how far it is to the next one.
-    fn place(&self, roughness: f64) -> (usize, f64) {
-        let [lo, hi] = self.range;
-        let last = self.fits.len() - 1;
-        let place = if hi > lo { ((roughness - lo) / (hi - lo)).clamp(0.0, 1.0) * last as f64 } else { 0.0 };
+    /// The node before a roughness and a strength, and how far it is to the next ones.
+    fn place(&self, [roughness, strength]: [f64; 2]) -> ([usize; 2], [f64; 2]) {
+        let (across, up) = self.cells();
+        let part =
+            |v: f64, [lo, hi]: [f64; 2]| if hi > lo { ((v - lo) / (hi - lo)).clamp(0.0, 1.0) } else { 0.0 };
+        let places =
+            [part(roughness, self.range) * across as f64, part(strength, [0.0, self.strength]) * up as f64];
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the nodes")]
-        let m = (place as usize).min(last.saturating_sub(1));
-        (m, place - m as f64)
+        let node = |v: f64, last: usize| (v as usize).min(last.saturating_sub(1));
+        let (m, k) = (node(places[0], across), node(places[1], up));
+        ([m, k], [places[0] - m as f64, places[1] - k as f64])
+    }
+
+    /// The fits at the corners of a cell: those of one strength, then those of the next.
+    fn corners(&self, [m, k]: [usize; 2]) -> [&Fit; 4] {
+        let (across, up) = self.cells();
+        let fit = |m: usize, k: usize| &self.fits[k.min(up) * self.across + m.min(across)];
+        [fit(m, k), fit(m + 1, k), fit(m, k + 1), fit(m + 1, k + 1)]
     }
 
     /// Shapes, albedos and residual of a mixture of the terms.
-    fn read(&self, roughness: f64, mixture: &[f64; TERMS]) -> (Vec<Shape>, Vec<f64>, f64) {
-        let (m, t) = self.place(roughness);
-        let (a, b) = (&self.fits[m], &self.fits[(m + 1).min(self.fits.len() - 1)]);
-        let mix = |x: f64, y: f64| x + (y - x) * t;
-        let shape = |(a, b): (&Shape, &Shape)| Shape { angle: mix(a.angle, b.angle), log: mix(a.log, b.log) };
+    fn read(&self, place: [f64; 2], mixture: &[f64; TERMS]) -> (Vec<Shape>, Vec<f64>, f64) {
+        let (cell, [t, u]) = self.place(place);
+        let fits = self.corners(cell);
+        let line = |x: f64, y: f64, t: f64| x + (y - x) * t;
+        let mix = |v: [f64; 4]| line(line(v[0], v[1], t), line(v[2], v[3], t), u);
+        let shape = |j: usize| {
+            let of = |part: fn(&Shape) -> f64| mix(fits.map(|f| part(&f.shapes[j])));
+            Shape { angle: of(|s| s.angle), log: of(|s| s.log), turn: of(|s| s.turn) }
+        };
         let albedo =
             |fit: &Fit, j: usize| fit.albedos.iter().zip(mixture).map(|(w, m)| w[j] * m).sum::<f64>();
-        let albedos = (0..=a.shapes.len()).map(|j| mix(albedo(a, j), albedo(b, j))).collect();
-        let residual = mix(a.relative(mixture), b.relative(mixture));
-        (a.shapes.iter().zip(&b.shapes).map(shape).collect(), albedos, residual)
+        let count = fits[0].shapes.len();
+        let albedos = (0..=count).map(|j| mix(fits.map(|f| albedo(f, j)))).collect();
+        let residual = mix(fits.map(|f| f.relative(mixture)));
+        ((0..count).map(shape).collect(), albedos, residual)
     }
 
-    /// The lobes of a texel, by F0 and diffuse colour.
+    /// The lobes of a texel of one width, by F0 and diffuse colour.
     #[must_use]
     pub fn texel(&self, roughness: f64, f0: [f64; 3], diffuse: [f64; 3]) -> Texel {
-        let channels = [0, 1, 2].map(|c| self.read(roughness, &mixture(f0[c], diffuse[c])));
-        let (m, t) = self.place(roughness);
-        let (a, b) = (&self.fits[m].constants, &self.fits[(m + 1).min(self.fits.len() - 1)].constants);
-        let lobe = |j: usize| Placed {
-            lobe: channels[0].0[j].lobe(),
-            albedo: [0, 1, 2].map(|c| channels[c].1[j + 1]),
-            constant: a[j] * libm::pow(b[j] / a[j], t),
+        self.texel_of([roughness, 0.0], f0, diffuse)
+    }
+
+    /// The lobes of a texel of a roughness and a strength.
+    #[must_use]
+    pub fn texel_of(&self, place: [f64; 2], f0: [f64; 3], diffuse: [f64; 3]) -> Texel {
+        let channels = [0, 1, 2].map(|c| self.read(place, &mixture(f0[c], diffuse[c])));
+        let ([m, k], [t, u]) = self.place(place);
+        let fits = self.corners([m, k]);
+        let lobe = |j: usize| {
+            let [a, b, c, d] = fits.map(|f| f.constants[j]);
+            let (first, second) = (a * libm::pow(b / a, t), c * libm::pow(d / c, t));
+            Placed {
+                lobe: channels[0].0[j].lobe(),
+                albedo: [0, 1, 2].map(|c| channels[c].1[j + 1]),
+                constant: first * libm::pow(second / first, u),
+            }
         };
         let mut lobes: Vec<Placed> = (0..self.lobes()).map(lobe).collect();
         sort(&mut lobes);
-        let lost = if t > 0.0 { self.lost.get(m).copied().unwrap_or(0.0) } else { 0.0 };
+        let cells = self.cells();
+        let lost =
+            if t + u > 0.0 { self.lost.get(k * cells.0.max(1) + m).copied().unwrap_or(0.0) } else { 0.0 };
         let residual = channels.iter().map(|c| c.2).fold(0.0, f64::max) + lost;
         Texel { diffuse: [0, 1, 2].map(|c| channels[c].1[0]), lobes, residual }
     }
@@ -179,6 +304,19 @@ impl Curve {
     pub fn largest(&self) -> f64 {
         self.fits.iter().map(|f| f.relative(&self.mean)).fold(0.0, f64::max) + self.between
     }
+}
+
+/// The lobes of a fit of three targets, red, green and blue.
+#[must_use]
+pub fn placed(fit: &Fit) -> Texel {
+    let lobe = |j: usize| Placed {
+        lobe: fit.shapes[j].lobe(),
+        albedo: [0, 1, 2].map(|c| fit.albedos[c][j + 1]),
+        constant: fit.constants[j],
+    };
+    let mut lobes: Vec<Placed> = (0..fit.shapes.len()).map(lobe).collect();
+    sort(&mut lobes);
+    Texel { diffuse: [0, 1, 2].map(|c| fit.albedos[c][0]), lobes, residual: fit.all() }
 }
 
 /// Sorts lobes by falling albedo, that of green counting most as in luminance.

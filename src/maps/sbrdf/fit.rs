@@ -4,7 +4,8 @@
 //! the unit of energy: peaks, tails and what is diffuse count as the light that they send. A residual is its root, over that of the target: 0
 //! the same, 1 as far as no lobe at all. For given shapes the albedos are those of least
 //! squares that are not negative; the shapes follow the method of Marquardt, on the residual that the albedos leave (variable
-//! projection by differences). A shape has two variables: the angle ψ of (Cx, Cz) = (−sin ψ, cos ψ), made max |C| = 1, and ln n.
+//! projection by differences). A shape has two variables: the angle ψ of (Cx, Cz) = (−sin ψ, cos ψ), made max |C| = 1, and ln n; where the
+//! target has a direction a third one, χ: Cx and Cy times e^χ and e^−χ.
 //!
 //! Source: [Marquardt 1963](crate::cite::MARQUARDT_1963). Deterministic.
 
@@ -13,17 +14,22 @@ use super::{CosineLobe, Divided, EXPONENTS, MOST_LOBES, Normalise};
 use crate::math::least_squares::{nonnegative, positive};
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_4};
 
-/// Shape of a lobe with Cx = Cy, as the fit varies it.
+/// Shape of a lobe, as the fit varies it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
     /// ψ; π/4 is Phong's lobe.
     pub angle: f64,
     /// ln n.
     pub log: f64,
+    /// χ, half of ln (Cx/Cy); 0 where Cx = Cy.
+    pub turn: f64,
 }
 
 /// Largest exponent times α².
 const MOST_EXPONENT: f64 = 6.0;
+
+/// Largest |χ|.
+const MOST_TURN: f64 = 2.0;
 
 /// ψ stays between lobes along the surface, forth and back.
 const ANGLES: [f64; 2] = [-1.45, 1.45];
@@ -33,8 +39,18 @@ impl Shape {
     #[must_use]
     pub fn lobe(&self) -> CosineLobe {
         let (sin, cos) = libm::sincos(self.angle);
-        let longest = sin.abs().max(cos.abs());
-        CosineLobe { c: [-sin / longest, -sin / longest, cos / longest], n: libm::exp(self.log) }
+        let c = [-sin * libm::exp(self.turn), -sin * libm::exp(-self.turn), cos];
+        let longest = c.iter().fold(0.0f64, |m, c| m.max(c.abs()));
+        CosineLobe { c: c.map(|c| c / longest), n: libm::exp(self.log) }
+    }
+
+    /// The shape of a lobe whose Cx and Cy have one sign.
+    #[must_use]
+    pub fn of(lobe: &CosineLobe) -> Shape {
+        let [x, y, z] = lobe.c;
+        let across = (x * y).max(0.0).sqrt();
+        let turn = if across > 0.0 { 0.5 * libm::log(x / y) } else { 0.0 };
+        Shape { angle: libm::atan2(if x < 0.0 { across } else { -across }, z), log: libm::log(lobe.n), turn }
     }
 
     /// Held within what may be stored, and below the exponent `most`.
@@ -43,14 +59,15 @@ impl Shape {
         Shape {
             angle: self.angle.clamp(ANGLES[0], ANGLES[1]),
             log: self.log.clamp(lo, hi.min(libm::log(most).max(lo))),
+            turn: self.turn.clamp(-MOST_TURN, MOST_TURN),
         }
     }
 
     fn moved(mut self, variable: usize, step: f64) -> Shape {
-        if variable == 0 {
-            self.angle += step
-        } else {
-            self.log += step
+        match variable {
+            0 => self.angle += step,
+            1 => self.log += step,
+            _ => self.turn += step,
         }
         self
     }
@@ -112,6 +129,11 @@ impl Problem {
         Problem { directions, factors, targets, mixture, normalise, most }
     }
 
+    /// Variables of a shape.
+    fn variables(&self) -> usize {
+        if self.directions.stretched { 3 } else { 2 }
+    }
+
     /// The lobe at every pair, weighed; for the search without the constant, which changes no shape and takes long.
     fn column(&self, shape: &Shape, search: bool) -> Vec<f64> {
         let divided = match self.normalise {
@@ -148,7 +170,7 @@ impl Problem {
     /// Shapes from a start, at most `steps` steps.
     #[must_use]
     pub fn descend(&self, start: &[Shape], steps: usize) -> Vec<Shape> {
-        let diffuse = self.diffuse();
+        let (diffuse, variables) = (self.diffuse(), self.variables());
         let mut shapes: Vec<Shape> = start.iter().map(|s| s.held(self.most)).collect();
         let mut columns: Vec<Vec<f64>> =
             std::iter::once(diffuse).chain(shapes.iter().map(|s| self.column(s, true))).collect();
@@ -178,8 +200,11 @@ impl Problem {
                     .enumerate()
                     .map(|(j, s)| {
                         let long = |v: f64| v.clamp(-1.0, 1.0);
-                        s.moved(0, 0.5 * long(2.0 * step[2 * j]))
-                            .moved(1, long(step[2 * j + 1]))
+                        let first = variables * j;
+                        let turn = if variables > 2 { 0.5 * long(2.0 * step[first + 2]) } else { 0.0 };
+                        s.moved(0, 0.5 * long(2.0 * step[first]))
+                            .moved(1, long(step[first + 1]))
+                            .moved(2, turn)
                             .held(self.most)
                     })
                     .collect();
@@ -207,9 +232,9 @@ impl Problem {
     /// Derivatives of what is left to the variables of the shapes, by differences.
     fn slopes(&self, shapes: &[Shape], columns: &mut [Vec<f64>], left: &[f64]) -> Vec<Vec<f64>> {
         const STEP: f64 = 1e-4;
-        let mut out = Vec::with_capacity(2 * shapes.len());
+        let mut out = Vec::with_capacity(self.variables() * shapes.len());
         for (j, shape) in shapes.iter().enumerate() {
-            for variable in 0..2 {
+            for variable in 0..self.variables() {
                 let moved = self.column(&shape.moved(variable, STEP), true);
                 let kept = std::mem::replace(&mut columns[j + 1], moved);
                 let rest = Problem::project(columns, &self.mixture).1;
@@ -256,6 +281,16 @@ impl Problem {
         let size = dot(&target, &target);
         self.subtract(&lobes, &albedos[1..], &mut left);
         (dot(&left, &left) / size.max(f64::MIN_POSITIVE)).sqrt()
+    }
+
+    /// Relative residual of lobes with their albedos, diffuse first, against a target.
+    #[must_use]
+    pub fn left(&self, lobes: &[CosineLobe], albedos: &[f64], target: usize) -> f64 {
+        let Some(target) = self.targets.get(target) else { return 0.0 };
+        let mut left: Vec<f64> =
+            target.iter().zip(&self.factors).map(|(t, f)| t - albedos[0] * f * FRAC_1_PI).collect();
+        self.subtract(lobes, &albedos[1..], &mut left);
+        (dot(&left, &left) / dot(target, target).max(f64::MIN_POSITIVE)).sqrt()
     }
 
     /// Relative difference of two sets of lobes with their albedos, diffuse first.
@@ -314,7 +349,7 @@ impl Fit {
 pub fn start(alpha: f64, lobes: usize) -> Vec<Shape> {
     const SPREAD: [&[f64]; MOST_LOBES] = [&[1.0], &[2.0, 0.2], &[3.0, 0.6, 0.06]];
     let n = 0.5 / (alpha * alpha);
-    let shape = |k: &f64| Shape { angle: FRAC_PI_4, log: libm::log(n * k) }.held(f64::MAX);
+    let shape = |k: &f64| Shape { angle: FRAC_PI_4, log: libm::log(n * k), turn: 0.0 }.held(f64::MAX);
     SPREAD[lobes.clamp(1, MOST_LOBES) - 1].iter().map(shape).collect()
 }
 

@@ -12,6 +12,7 @@ pub mod fit;
 pub mod integral;
 pub mod ladder;
 pub mod nodes;
+pub mod refit;
 pub mod tabulated;
 
 use glam::DVec3;

@@ -7,7 +7,8 @@ use super::output::{Map, failed};
 use crate::cancel::Cancel;
 use crate::encode::{Storage, mips};
 use crate::maps::{
-    Centre, Effort, Facet, Fitter, Footprint, Level, Lobe, Objective, RULES, Surface, Texel, reflected, rules,
+    Centre, Effort, Facet, Fitter, Footprint, Level, Lobe, Objective, RULES, Shape, Surface, Texel, Wide,
+    reflected, rules,
 };
 use crate::picture::{Coverage, halved};
 use crate::plan::map::{Held, Kind, MapRequest, Output};
@@ -100,15 +101,18 @@ pub(super) fn measure(
             let facets = gather(surface, &cover, texel % level.size[0], texel / level.size[0]);
             let Some(footprint) = Footprint::new(facets) else { return Ok(None) };
             let own = &level.at(*texel);
+            let two = request.filter.shape == Shape::Two;
             let light = request.filter.objective == Objective::Reflected;
-            let mut distance = |lobe: &Lobe| {
-                if light {
+            let mut distance = |(lobe, wide): &(Lobe, Wide)| {
+                if two {
+                    fitter.distance_of_two(lobe, *wide, &footprint).0
+                } else if light {
                     reflected::distance(lobe, &footprint)
                 } else {
                     fitter.distance(lobe, &footprint).0
                 }
             };
-            let before = distance(&own.lobe());
+            let before = distance(&(own.lobe(), own.second()));
             let after = distance(&stored.lobe(*texel, own));
             let normals = others.iter().map(|s| distance(&s.lobe(*texel, own))).collect();
             let rules = if request.compare { compare(fitter, &footprint, request) } else { Vec::new() };
@@ -185,8 +189,20 @@ fn choose(level: &Level<'_>, k: usize, count: usize) -> Vec<usize> {
 
 /// The facets under a texel: all, or every so many of each line.
 fn gather(surface: &Surface, cover: &[Coverage; 2], x: usize, y: usize) -> Vec<Facet> {
+    let under = under(surface.size[0], cover, x, y, MOST);
+    under.into_iter().map(|(texel, weight)| surface.facet(texel, weight)).collect()
+}
+
+/// The texels of the first level under a texel, with their shares: all, or every so many of each line for at most `most`.
+pub(super) fn under(
+    width: usize,
+    cover: &[Coverage; 2],
+    x: usize,
+    y: usize,
+    most: usize,
+) -> Vec<(usize, f64)> {
     let (across, down) = (cover[0].of(x), cover[1].of(y));
-    let side = MOST.isqrt();
+    let side = most.isqrt();
     let thin = |line: &[(usize, f64)]| -> Vec<(usize, f64)> {
         let step = line.len().div_ceil(side).max(1);
         let kept: Vec<(usize, f64)> = line.iter().skip(step / 2).step_by(step).copied().collect();
@@ -196,9 +212,9 @@ fn gather(surface: &Surface, cover: &[Coverage; 2], x: usize, y: usize) -> Vec<F
     let (across, down) = (thin(across), thin(down));
     let row = |(y, wy): &(usize, f64)| {
         let (y, wy) = (*y, *wy);
-        across.iter().map(move |(x, wx)| (y * surface.size[0] + x, wx * wy)).collect::<Vec<_>>()
+        across.iter().map(move |(x, wx)| (y * width + x, wx * wy)).collect::<Vec<_>>()
     };
-    down.iter().flat_map(row).map(|(texel, weight)| surface.facet(texel, weight)).collect()
+    down.iter().flat_map(row).collect()
 }
 
 /// What a reader of the first output finds on a level.
@@ -206,6 +222,7 @@ struct Stored {
     roughness: Vec<f32>,
     normal: Option<(Vec<f32>, usize, f32)>,
     anisotropy: Option<Vec<f32>>,
+    wide: Option<Vec<f32>>,
 }
 
 /// The first output with its normals in each of [`NORMALS`]; nothing where none are written.
@@ -230,7 +247,7 @@ fn stored(
     cancel: &Cancel,
 ) -> Result<Stored, MapError> {
     let Some(output) = output else {
-        return Ok(Stored { roughness: Vec::new(), normal: None, anisotropy: None });
+        return Ok(Stored { roughness: Vec::new(), normal: None, anisotropy: None, wide: None });
     };
     let values = |kind: Kind| -> Result<Option<(Vec<f32>, usize)>, MapError> {
         let Some(map) = maps.iter().find(|m| m.kind == kind) else { return Ok(None) };
@@ -246,13 +263,14 @@ fn stored(
     let down = request.normal.as_ref().is_some_and(|n| n.convention.green_down);
     let normal = values(Kind::Normal)?.map(|(v, n)| (v, n, if down { -1.0 } else { 1.0 }));
     let anisotropy = values(Kind::Anisotropy)?.map(|(v, _)| v);
-    Ok(Stored { roughness, normal, anisotropy })
+    let wide = values(Kind::Wide)?.map(|(v, _)| v);
+    Ok(Stored { roughness, normal, anisotropy, wide })
 }
 
 impl Stored {
     /// The lobe that a shader makes of a texel; what is not written is taken as it was found.
-    fn lobe(&self, texel: usize, own: &Texel) -> Lobe {
-        let mut lobe = own.lobe();
+    fn lobe(&self, texel: usize, own: &Texel) -> (Lobe, Wide) {
+        let (mut lobe, mut wide) = (own.lobe(), own.second());
         if let Some(r) = self.roughness.get(texel).copied().map(f64::from) {
             (lobe.alpha_min, lobe.alpha_max) = (r * r, r * r);
         }
@@ -268,6 +286,10 @@ impl Stored {
             lobe.alpha_max = lobe.alpha_min + (1.0 - lobe.alpha_min) * s * s;
             lobe.angle = libm::atan2(f64::from(t[1]), f64::from(t[0]));
         }
-        lobe
+        if let Some(values) = &self.wide {
+            let [r, share] = [0, 1].map(|c| f64::from(values[2 * texel + c]));
+            wide = Wide { alpha: r * r, share };
+        }
+        (lobe, wide)
     }
 }

@@ -10,7 +10,9 @@ use crate::maps::surface;
 use crate::maps::{Field, Surface, TexelFault};
 use crate::picture::{self, Picture, Plane, Space};
 use crate::plan::map::sbrdf::{BRDF, Origin};
-use crate::plan::map::{FromLobe, Input, Packing, PlannedMap, RoughnessInput, Source};
+use crate::plan::map::{
+    ANISOTROPY, AnisotropyInput, FromLobe, Input, Packing, PlannedMap, RoughnessInput, Source,
+};
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -95,6 +97,10 @@ pub(super) fn read(planned: &PlannedMap, cancel: &Cancel) -> Result<Sources, Map
             whole = request.roughness.packs().then_some((picture, index));
         }
     }
+    if let Some(input) = &request.anisotropy {
+        let stretched = stretched(input, &surface.roughness, (size, wrap), &mut loader)?;
+        surface.stretch = Some(stretched);
+    }
     if let Some(input) = &request.normal {
         let picture = loader.load("normal", &input.image)?;
         surface.normals = Field::Map(normals(&picture, input, size)?);
@@ -114,6 +120,29 @@ pub(super) fn read(planned: &PlannedMap, cancel: &Cancel) -> Result<Sources, Map
     };
     let packed = packed(request.packing, whole, size);
     Ok(Sources { surface, packed, certificate, target, files: loader.files })
+}
+
+/// Larger widths and directions of all texels.
+fn stretched(
+    input: &AnisotropyInput,
+    roughness: &Field<f32>,
+    (size, wrap): ([usize; 2], [picture::Wrap; 2]),
+    loader: &mut Loader<'_>,
+) -> Result<Vec<[f32; 2]>, MapError> {
+    let AnisotropyInput { strength, rotation, .. } = *input;
+    let texels = size[0] * size[1];
+    let Some(image) = &input.image else {
+        // along the tangent
+        let one = |i| surface::stretch(roughness.at(i), [1.0, 0.5, 1.0], strength, rotation);
+        return judged(Path::new(ANISOTROPY), size[0], texels, one);
+    };
+    let (path, wrap) = (image.path(), if input.resample { input.wrap } else { wrap });
+    let picture = resampled(loader.load(ANISOTROPY, image)?, size, wrap);
+    let [x, y, s] = AnisotropyInput::CHANNELS.map(|c| find(&picture, &path, c));
+    let (x, y, s) = (x?, y?, s?);
+    judged(&path, size[0], texels, |i| {
+        surface::stretch(roughness.at(i), [x.values[i], y.values[i], s.values[i]], strength, rotation)
+    })
 }
 
 /// Codes that tell of lobes of another kind, as widths of GGX in a surface.
@@ -166,7 +195,7 @@ fn open(image: &Source, cancel: &Cancel) -> Result<(Picture, String), MapError> 
     let bytes = image.bytes(cancel).map_err(unread)?;
     let hash = blake3::hash(&bytes).to_hex().to_string();
     let wrong = |source| MapError::Picture { path: image.path(), source };
-    if picture::MAGIC.iter().any(|(magic, _)| bytes.starts_with(magic)) {
+    if picture::is_picture(&bytes) {
         return Ok((picture::read_bytes(&bytes).map_err(wrong)?, hash));
     }
     let image = read::read_bytes_until(cancel, &bytes).map_err(unread)?;

@@ -12,16 +12,18 @@ mod output;
 mod pictured;
 mod record;
 mod sbrdf;
+pub mod texel;
+mod texel_file;
 
 pub use crate::plan::map::sbrdf::{ColourInput, NumberInput, Origin};
 pub use crate::plan::map::{
-    FromLobe, Input, MapRequest, Output, RoughnessInput, SbrdfRequest, Second, Source,
+    AnisotropyInput, FromLobe, Input, MapRequest, Output, RoughnessInput, SbrdfRequest, Second, Source,
 };
 pub use certificate::{CertificateRecord, Gained, Worst};
 pub use check::{Measured, RuleMeasured, StoredMeasured};
 pub use pictured::Pictured;
 pub use record::{InputRecord, Job, LevelRecord, MapEntry, MapFile, MapRecord, Place};
-pub use sbrdf::{Ladder, Normalisation, Residual, SbrdfRecord};
+pub use sbrdf::{Ladder, MeasuredLobes, Normalisation, Residual, SbrdfRecord};
 
 use super::{Event, MANIFEST, PipelineError, Progress, Settings};
 use crate::cancel::{Cancel, Cancelled};
@@ -188,7 +190,9 @@ pub(super) fn make(
     let tell = |done, texels| progress.event(&Event::MapProgress { map: name, index, done, texels });
     let levels = maps::filter(&sources.surface, &request.filter, cancel, &tell)?;
     let lobes = match (&request.sbrdf, &sources.target) {
-        (Some(sbrdf), Some(target)) => Some((sbrdf, sbrdf::find(sbrdf, target, &levels, cancel)?)),
+        (Some(sbrdf), Some(target)) => {
+            Some((sbrdf, sbrdf::find((request, sbrdf), target, (&sources.surface, &levels), cancel)?))
+        }
         _ => None,
     };
     let maps = output::plan(request, &sources, &levels, lobes.as_ref().map(|l| &l.1), cancel)?;

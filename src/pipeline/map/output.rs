@@ -125,6 +125,17 @@ fn map(kind: Kind, request: &MapRequest, sources: &Sources, levels: &[Level<'_>]
             };
             (channels, levels.iter().zip(&directions).map(level).collect())
         }
+        Kind::Wide => {
+            let channels = vec![
+                channel("wide.roughness", "r = sqrt(alpha) of the wide lobe about the same normal", unit),
+                channel(
+                    "wide.weight",
+                    "its share w of the density: (1 - w) D(roughness) + w D(wide.roughness)",
+                    unit,
+                ),
+            ];
+            (channels, each(levels, |t| t.wide.to_vec()))
+        }
         Kind::Conversion => {
             sources.certificate.as_ref().map_or_else(|| (Vec::new(), Vec::new()), |c| c.map())
         }

@@ -24,6 +24,9 @@ pub struct Pictured {
     pub facets: Vec<[f32; 4]>,
     /// The lobe: normal, alpha_max, alpha_min, angle.
     pub lobe: [f32; 6],
+    /// The wide lobe beside it, of two: alpha and share.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wide: Option<[f32; 2]>,
 }
 
 /// The first of the worst texels.
@@ -49,7 +52,8 @@ fn pictured_texel(surface: &Surface, levels: &[Level<'_>], place: &Place) -> Opt
         let n = f.normal;
         [-n.x / n.z, -n.y / n.z, f.alpha, f.weight].map(|v| v as f32)
     };
-    let lobe = levels.get(place.level)?.at(place.y * levels[place.level].size[0] + place.x).lobe();
+    let texel = levels.get(place.level)?.at(place.y * levels[place.level].size[0] + place.x);
+    let (lobe, wide) = (texel.lobe(), texel.second());
     let n = lobe.normal;
     Some(Pictured {
         level: place.level,
@@ -57,5 +61,6 @@ fn pictured_texel(surface: &Surface, levels: &[Level<'_>], place: &Place) -> Opt
         y: place.y,
         facets: merged.facets.iter().map(facet).collect(),
         lobe: [n.x, n.y, n.z, lobe.alpha_max, lobe.alpha_min, lobe.angle].map(|v| v as f32),
+        wide: (wide.share > 0.0).then_some([wide.alpha as f32, wide.share as f32]),
     })
 }

@@ -44,6 +44,9 @@ pub struct MapRecord {
     pub formula: String,
     /// `mean` or `fit`.
     pub normals: String,
+    /// y of written normals points down.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub green_down: bool,
     /// `isotropic` or `anisotropic`.
     pub shape: String,
     /// `fast` or `exact`.
@@ -222,6 +225,7 @@ pub(super) fn record(
         rule: filter.rule.id.to_owned(),
         formula: filter.rule.formula.to_owned(),
         normals: words::of(&words::CENTRES, &filter.centre).to_owned(),
+        green_down: request.normal.as_ref().is_some_and(|n| n.convention.green_down),
         shape: words::of(&words::SHAPES, &filter.shape).to_owned(),
         effort: words::of(&words::EFFORTS, &filter.effort).to_owned(),
         objective: words::of(&words::OBJECTIVES, &filter.objective).to_owned(),

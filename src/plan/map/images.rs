@@ -31,7 +31,7 @@ impl<'a> Images<'a> {
         faults: &mut Faults,
     ) -> Option<usize> {
         let facts = known(image, place, faults)?;
-        let grey = role != NORMAL;
+        let grey = role != NORMAL && role != ANISOTROPY;
         named.iter().for_each(|(name, place)| has(&facts, name, grey, place, faults));
         self.count(&facts);
         self.sizes.push((image, facts.size, place.clone()));
@@ -99,6 +99,9 @@ fn known(image: &Source, place: &Path, faults: &mut Faults) -> Option<Facts> {
 
 /// What normals are to a map.
 pub(super) const NORMAL: &str = "normal";
+
+/// What directions and strengths of facets are to a map.
+pub(crate) const ANISOTROPY: &str = "anisotropy";
 
 /// An image must have a channel, which grey may serve for.
 fn has(facts: &Facts, name: &str, grey: bool, place: &Path, faults: &mut Faults) {

@@ -99,6 +99,38 @@ impl Input {
     }
 }
 
+/// Facets of two widths, as `KHR_materials_anisotropy` tells them: α_b = r² across, α_t = mix(α_b, 1, strength²) along the direction.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AnisotropyInput {
+    /// Direction in R and G, codes of [−1, 1], and strength in B; along the tangent, with a strength of 1, without one.
+    pub image: Option<Source>,
+    /// Factor of the strength.
+    pub strength: f64,
+    /// Turn of the direction, in rad against the clock from the tangent.
+    pub rotation: f64,
+    /// What lies beyond the border, where the image is resampled.
+    pub wrap: [Wrap; 2],
+    /// Resample the smaller images to the size of the largest one.
+    pub resample: bool,
+}
+
+impl AnisotropyInput {
+    /// Channels of its image.
+    pub const CHANNELS: [&'static str; 3] = ["R", "G", "B"];
+}
+
+impl Default for AnisotropyInput {
+    fn default() -> AnisotropyInput {
+        AnisotropyInput {
+            image: None,
+            strength: 1.0,
+            rotation: 0.0,
+            wrap: [Wrap::Repeat; 2],
+            resample: false,
+        }
+    }
+}
+
 /// Where the roughness comes from.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RoughnessInput {
@@ -214,7 +246,7 @@ pub(super) fn facts(source: &Source) -> Result<Facts, Unknown> {
     let cancel = Cancel::new();
     let bytes = source.bytes(&cancel).map_err(Unknown::Read)?;
     let blake3 = blake3::hash(&bytes).to_hex().to_string();
-    let (format, size, names) = if picture::MAGIC.iter().any(|(magic, _)| bytes.starts_with(magic)) {
+    let (format, size, names) = if picture::is_picture(&bytes) {
         let (size, names) = picture::facts(&bytes).map_err(Unknown::Picture)?;
         ("picture", size, names)
     } else {

@@ -1,7 +1,7 @@
 //! Whether a map can be made: its numbers, what goes with what, and its images.
 
-use super::images::{Images, NORMAL};
-use super::{FromLobe, MapRequest, RoughnessInput, fault, sbrdf};
+use super::images::{ANISOTROPY, Images, NORMAL};
+use super::{AnisotropyInput, FromLobe, MapRequest, RoughnessInput, fault, sbrdf};
 use crate::encode::mips;
 use crate::maps::{Centre, Objective, Shape, rules};
 use crate::plan::fault::Fault;
@@ -28,6 +28,17 @@ pub(super) fn judge(request: &MapRequest, path: &Path, faults: &mut Faults) {
             format!("rule {} knows one width", rule.id),
             "take the rule fit, or the isotropic shape",
         );
+    }
+    if filter.shape == Shape::Two && !fits {
+        wrong(
+            "shape",
+            format!("rule {} writes one lobe", rule.id),
+            "take the rule fit, or the isotropic shape",
+        );
+    }
+    if filter.shape == Shape::Two && filter.objective == Objective::Reflected {
+        let why = "two lobes are fitted to the distribution of normals".to_owned();
+        wrong("shape", why, "leave the objective out, or take the isotropic shape");
     }
     if filter.centre == Centre::Free && !fits {
         let why = format!("rule {} stands about the mean normal", rule.id);
@@ -65,10 +76,35 @@ pub(super) fn judge(request: &MapRequest, path: &Path, faults: &mut Faults) {
         }
         RoughnessInput::Image { .. } => {}
     }
+    if let Some(stretched) = &request.anisotropy {
+        anisotropy(request, stretched, path, faults);
+    }
     if let Some(sbrdf) = &request.sbrdf {
         sbrdf::judge(request, sbrdf, path, faults);
     }
     outputs(request, path, faults);
+}
+
+/// Facets of two widths are written with two widths, and told once.
+fn anisotropy(request: &MapRequest, input: &AnisotropyInput, path: &Path, faults: &mut Faults) {
+    let place = path.key(ANISOTROPY);
+    for (key, got, [min, max]) in
+        [("strength", input.strength, [0.0, 1.0]), ("rotation", input.rotation, [-1e3, 1e3])]
+    {
+        if !(min..=max).contains(&got) {
+            faults.value(place.key(key), Fault::Range { key: key.to_owned(), got, min, max });
+        }
+    }
+    let (why, remedy) = match () {
+        () if request.filter.shape != Shape::Anisotropic => {
+            ("facets of two widths are written with two widths", "ask for the shape anisotropic")
+        }
+        () if request.roughness.from().is_some_and(|f| f.second.is_some()) => {
+            ("lobes of two numbers have widths of their own", "leave the anisotropy out, or `second`")
+        }
+        () => return,
+    };
+    faults.value(place, fault(why.to_owned(), None, Some(remedy)));
 }
 
 /// A parametrisation of two numbers has a second channel, and is written with two widths.
@@ -135,6 +171,11 @@ pub(super) fn images(request: &MapRequest, path: &Path, faults: &mut Faults) -> 
         let named: Vec<_> = normal.used().iter().enumerate().map(|(i, n)| (n.as_str(), at(i))).collect();
         images.look(NORMAL, &normal.image, &named, &place, faults);
     }
+    if let Some(AnisotropyInput { image: Some(image), .. }) = &request.anisotropy {
+        let place = path.key(ANISOTROPY);
+        let named = AnisotropyInput::CHANNELS.map(|c| (c, place.clone()));
+        images.look(ANISOTROPY, image, &named, &place, faults);
+    }
     if let Some(sbrdf) = &request.sbrdf {
         sbrdf::look(sbrdf, path, &mut images, faults);
     }
@@ -151,7 +192,8 @@ pub(super) fn images(request: &MapRequest, path: &Path, faults: &mut Faults) -> 
             }
         }
     }
-    let resample = request.normal.as_ref().is_some_and(|n| n.resample);
+    let stretched = request.anisotropy.as_ref().is_some_and(|a| a.resample);
+    let resample = stretched || request.normal.as_ref().is_some_and(|n| n.resample);
     let size = match images.size(resample, faults) {
         Some(size) => size,
         // of numbers alone one texel is fitted

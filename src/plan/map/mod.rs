@@ -9,7 +9,8 @@ mod judge;
 mod output;
 pub mod sbrdf;
 
-pub use input::{FromLobe, Input, RoughnessInput, Second, Source};
+pub(crate) use images::ANISOTROPY;
+pub use input::{AnisotropyInput, FromLobe, Input, RoughnessInput, Second, Source};
 pub use output::{Held, Kind, Output};
 pub use sbrdf::SbrdfRequest;
 
@@ -49,8 +50,8 @@ pub mod words {
     /// `normals`: what lobes stand about.
     pub const CENTRES: [(&str, Centre); 2] = [("mean", Centre::Mean), ("fit", Centre::Free)];
     /// `shape`.
-    pub const SHAPES: [(&str, Shape); 2] =
-        [("isotropic", Shape::Isotropic), ("anisotropic", Shape::Anisotropic)];
+    pub const SHAPES: [(&str, Shape); 3] =
+        [("isotropic", Shape::Isotropic), ("anisotropic", Shape::Anisotropic), ("two", Shape::Two)];
     /// `effort`.
     pub const EFFORTS: [(&str, Effort); 2] = [("fast", Effort::Fast), ("exact", Effort::Exact)];
     /// `objective`.
@@ -83,6 +84,8 @@ pub struct MapRequest {
     pub normal: Option<Input>,
     /// The roughness.
     pub roughness: RoughnessInput,
+    /// Facets of two widths; round ones without it.
+    pub anisotropy: Option<AnisotropyInput>,
     /// Lobes that are written in its place.
     pub sbrdf: Option<SbrdfRequest>,
     /// What is written beside it.
@@ -116,7 +119,8 @@ impl MapRequest {
             RoughnessInput::Constant(_) => None,
         };
         let lobes = self.sbrdf.iter().flat_map(SbrdfRequest::images).map(|(_, image)| image);
-        self.normal.iter().map(|n| &n.image).chain(roughness).chain(lobes)
+        let stretched = self.anisotropy.iter().filter_map(|a| a.image.as_ref());
+        self.normal.iter().map(|n| &n.image).chain(roughness).chain(stretched).chain(lobes)
     }
 
     /// A map with the defaults of a recipe: the rule of this program about the mean normal, one width, KTX2.
@@ -126,6 +130,7 @@ impl MapRequest {
             name: name.into(),
             normal,
             roughness,
+            anisotropy: None,
             sbrdf: None,
             packing: Packing::default(),
             factor: 1.0,
@@ -196,6 +201,13 @@ impl MapRequest {
             "check": self.check,
             "compare": self.compare,
         });
+        if let Some(AnisotropyInput { image, strength, rotation, wrap, resample }) = &self.anisotropy {
+            let mut own = json!({ "image": image.is_some(), "strength": strength, "rotation": rotation });
+            if *resample {
+                own["wrap"] = json!(wrap.map(|w| words::of(&words::WRAPS, &w)));
+            }
+            whole["anisotropy"] = own;
+        }
         if let Some(sbrdf) = &self.sbrdf {
             whole["sbrdf"] = sbrdf.canonical();
         }

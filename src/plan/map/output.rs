@@ -16,6 +16,8 @@ pub enum Kind {
     Normal,
     /// Direction and strength of the wider axis.
     Anisotropy,
+    /// The wide lobe beside a narrow one: √α, and its share.
+    Wide,
     /// D of each texel, and its doubt.
     Error,
     /// What a conversion of lobes of another kind costs: D, and the largest difference of the reflectance.
@@ -26,6 +28,8 @@ pub enum Kind {
     Albedo(usize),
     /// Axis and exponent of a lobe.
     Shape(usize),
+    /// Direction of the first axis of lobes with Cx ≠ Cy.
+    Tangent,
     /// How far lobes are from what they stand for.
     Residual,
     /// The table of the integrals of lobes.
@@ -45,11 +49,13 @@ impl Kind {
             Kind::Roughness => "roughness",
             Kind::Normal => "normal",
             Kind::Anisotropy => "anisotropy",
+            Kind::Wide => "wide",
             Kind::Error => "error",
             Kind::Conversion => "conversion",
             Kind::Diffuse => "diffuse",
             Kind::Albedo(j) => lobe(ALBEDOS, j),
             Kind::Shape(j) => lobe(SHAPES, j),
+            Kind::Tangent => "tangent",
             Kind::Residual => "residual",
             Kind::Normalisation => "normalisation",
         }
@@ -61,7 +67,8 @@ impl Kind {
         match self {
             Kind::Roughness => Held::Roughness,
             Kind::Normal => Held::Normal,
-            Kind::Anisotropy => Held::Anisotropy,
+            Kind::Anisotropy | Kind::Tangent => Held::Anisotropy,
+            Kind::Wide => Held::Wide,
             Kind::Error | Kind::Conversion | Kind::Residual => Held::Error,
             Kind::Diffuse | Kind::Albedo(_) => Held::Albedo,
             Kind::Shape(_) => Held::Shape,
@@ -87,11 +94,13 @@ pub enum Held {
     Shape,
     /// A table that is read beside the maps.
     Table,
+    /// Wide lobes beside narrow ones.
+    Wide,
 }
 
 impl Held {
     /// Everything, in the order in which storages are written.
-    pub const ALL: [Held; 7] = [
+    pub const ALL: [Held; 8] = [
         Held::Roughness,
         Held::Normal,
         Held::Anisotropy,
@@ -99,6 +108,7 @@ impl Held {
         Held::Albedo,
         Held::Shape,
         Held::Table,
+        Held::Wide,
     ];
 
     /// The word of an output, as in `ktx2:shape=unorm16`.
@@ -112,13 +122,14 @@ impl Held {
             Held::Albedo => "albedo",
             Held::Shape => "shape",
             Held::Table => "table",
+            Held::Wide => "wide",
         }
     }
 
     /// Storages in order of preference: 8 bits for what is looked at, 16 for normals and lobes, floats where a container has nothing less.
     const fn usual(self) -> &'static [Storage] {
         match self {
-            Held::Roughness | Held::Anisotropy => &[Storage::Unorm8, Storage::Float],
+            Held::Roughness | Held::Anisotropy | Held::Wide => &[Storage::Unorm8, Storage::Float],
             Held::Normal | Held::Shape => &[Storage::Unorm16, Storage::Float],
             Held::Error => &[Storage::Half, Storage::Unorm8],
             Held::Albedo => &[Storage::Half, Storage::Unorm16],
@@ -238,6 +249,7 @@ impl MapRequest {
             self.filter.shape == Shape::Anisotropic && self.filter.rule.anisotropic && self.sbrdf.is_none(),
             Kind::Anisotropy,
         );
+        put(self.filter.shape == Shape::Two && self.sbrdf.is_none(), Kind::Wide);
         match &self.sbrdf {
             None => put(true, Kind::Error),
             Some(sbrdf) => {
@@ -246,6 +258,7 @@ impl MapRequest {
                     put(true, Kind::Albedo(j));
                     put(true, Kind::Shape(j));
                 }
+                put(self.filter.shape == Shape::Anisotropic, Kind::Tangent);
                 put(true, Kind::Residual);
                 put(true, Kind::Normalisation);
             }
@@ -270,7 +283,7 @@ impl MapRequest {
             },
             Kind::Normal if self.drops_z() => 2,
             Kind::Normal | Kind::Anisotropy | Kind::Diffuse | Kind::Normalisation => 3,
-            Kind::Error | Kind::Conversion | Kind::Residual => 2,
+            Kind::Error | Kind::Conversion | Kind::Residual | Kind::Wide | Kind::Tangent => 2,
             Kind::Albedo(_) => 3 + usize::from(self.sbrdf.as_ref().is_some_and(SbrdfRequest::constants)),
             Kind::Shape(_) => 4,
         }

@@ -164,9 +164,13 @@ pub(super) fn judge(request: &MapRequest, sbrdf: &SbrdfRequest, path: &Path, fau
     let mut wrong = |key: &str, why: &str, remedy| {
         faults.value(path.key(key), fault(why.to_owned(), None, Some(remedy)));
     };
-    if request.filter.shape == Shape::Anisotropic {
-        let why = "lobes are fitted to one width: an SBRDF map has no direction";
+    if request.filter.shape == Shape::Two {
+        let why = "lobes are fitted to one width, not to two lobes of GGX";
         wrong("shape", why, "take the isotropic shape, or leave sbrdf out");
+    }
+    if request.filter.shape == Shape::Anisotropic && matches!(sbrdf.origin, Origin::Tabulated(_)) {
+        let why = "a tabulated BRDF of half and difference angles is isotropic";
+        wrong("shape", why, "take the isotropic shape, or leave the table out");
     }
     if matches!(sbrdf.origin, Origin::Tabulated(_)) {
         let white = matches!(request.roughness, RoughnessInput::Constant(r) if r.to_bits() == 1f64.to_bits());

@@ -6,7 +6,8 @@ use super::survey::{SurveyOptions, names};
 use super::{PIXELS, Pictures};
 use crate::cancel::Cancel;
 use crate::maps::{Centre, Shape};
-use crate::plan::map::{Input, Kind, MapRequest, Packing, RoughnessInput, Source};
+use crate::picture::Wrap;
+use crate::plan::map::{AnisotropyInput, Input, Kind, MapRequest, Packing, RoughnessInput, Source};
 use crate::scene::{
     self, LeftOut, LeftOutKind, Limits, MapTexture, Material, MaterialRef, Scene, SceneError,
 };
@@ -147,12 +148,25 @@ impl Found<'_> {
             Some(texture) => (RoughnessInput::new(image(texture)?), factor),
             None => (RoughnessInput::Constant(factor), 1.0),
         };
+        let own = material.maps.anisotropy.as_ref().filter(|_| material.stretch() > 0.0);
+        let stretched = own.map(&mut image).transpose()?;
         let mut request = MapRequest::new(name, normal, roughness);
         (request.factor, request.packing) = (factor, Packing::Gltf);
         if self.kinds.contains(&Kind::Normal) {
             request.filter.centre = Centre::Free;
         }
-        if self.kinds.contains(&Kind::Anisotropy) {
+        if material.stretch() > 0.0 {
+            let texture = material.maps.anisotropy.as_ref();
+            request.anisotropy = Some(AnisotropyInput {
+                image: stretched,
+                strength: material.stretch(),
+                rotation: material.maps.rotation,
+                wrap: texture.map_or([Wrap::Repeat; 2], |t| t.wrap),
+                resample: true,
+            });
+        }
+        // facets of two widths are no lobe of one
+        if self.kinds.contains(&Kind::Anisotropy) || request.anisotropy.is_some() {
             request.filter.shape = Shape::Anisotropic;
         }
         request.possible().map_err(|faults| faults.join("; "))?;
@@ -169,8 +183,13 @@ fn why(material: &Material) -> String {
         Some(_) => format!("metallicRoughnessTexture, roughnessFactor {factor}"),
         None => format!("roughness {factor}"),
     };
+    let stretched = match (&maps.anisotropy, material.stretch()) {
+        (_, s) if s <= 0.0 => String::new(),
+        (Some(_), s) => format!(", anisotropyTexture, anisotropyStrength {s}"),
+        (None, s) => format!(", anisotropyStrength {s}"),
+    };
     match &maps.normal {
-        Some(_) => format!("normalTexture, scale {}, and {roughness}", maps.scale),
-        None => roughness,
+        Some(_) => format!("normalTexture, scale {}, and {roughness}{stretched}", maps.scale),
+        None => format!("{roughness}{stretched}"),
     }
 }

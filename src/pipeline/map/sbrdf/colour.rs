@@ -4,9 +4,10 @@ use super::super::MapError;
 use super::super::input::{Loader, find, judged, resampled};
 use super::texels;
 use crate::cancel::{Cancel, Cancelled};
+use crate::functions::conversion::gltf_anisotropy;
 use crate::maps::sbrdf::curve::Curve;
 use crate::maps::spec_gloss::Solved;
-use crate::maps::{Level, TexelFault};
+use crate::maps::{self, Level, TexelFault};
 use crate::picture::{Picture, Space, Wrap, shrink};
 use crate::plan::map::Source;
 use crate::plan::map::sbrdf::{BASE, COLOUR, ColourInput, METALLIC, NumberInput};
@@ -65,6 +66,14 @@ impl Colours {
         Ok(Colours { planes: (0..6).map(plane).collect(), constant: [0.0; 6] })
     }
 
+    /// F0 and diffuse colour of a texel of the first level.
+    pub(super) fn at(&self, texel: usize) -> [f64; 6] {
+        match self.planes.is_empty() {
+            true => self.constant,
+            false => std::array::from_fn(|c| f64::from(self.planes[c][texel])),
+        }
+    }
+
     /// Mean F0 and mean diffuse colour, of all channels.
     pub(super) fn means(&self) -> (f64, f64) {
         let mean = |c: usize| match self.planes.get(c) {
@@ -96,8 +105,8 @@ impl Colours {
                     true => self.constant,
                     false => std::array::from_fn(|c| f64::from(planes[c][i])),
                 };
-                let r = f64::from(level.at(i).roughness);
-                texels::put(&curve.texel(r, [v[0], v[1], v[2]], [v[3], v[4], v[5]]), slot);
+                let place = place(&level.at(i));
+                texels::put(&curve.texel_of(place, [v[0], v[1], v[2]], [v[3], v[4], v[5]]), slot);
             };
             let mut values = vec![0.0; level.len() * stride];
             values.par_chunks_exact_mut(stride).enumerate().for_each(texel);
@@ -105,6 +114,13 @@ impl Colours {
         }
         Ok(out)
     }
+}
+
+/// Roughness of the smaller width, and strength of the anisotropy, which is 0 of one width.
+pub(super) fn place(texel: &maps::Texel) -> [f64; 2] {
+    let lobe = texel.lobe();
+    let strength = gltf_anisotropy([lobe.alpha_max, lobe.alpha_min]).1;
+    [f64::from(texel.roughness), if lobe.alpha_max > lobe.alpha_min { strength } else { 0.0 }]
 }
 
 /// A channel, linear, each value judged.

@@ -6,9 +6,9 @@ use super::{Found, texels};
 use crate::cancel::Cancel;
 use crate::encode::mips::{self, MipLevel};
 use crate::grid::Channel;
-use crate::maps::Level;
 use crate::maps::sbrdf::curve::{Placed, Texel};
 use crate::maps::sbrdf::{NORMALISATION, exponent, integral};
+use crate::maps::{Level, signs};
 use crate::plan::map::{Kind, Output};
 use crate::verify::seeds::Seeds;
 use rayon::prelude::*;
@@ -40,6 +40,19 @@ pub(in super::super) fn map(
             let c = |id: &str| channel(id, "diagonal element of C; max |C| = 1", [-1.0, 1.0]);
             let code = channel("exponent", "ln(n) over the logarithm of the largest exponent", [0.0, 1.0]);
             (vec![c("c.x"), c("c.y"), c("c.z"), code], found.part(texels::lobe(j) + texels::SHAPE, 4))
+        }
+        Kind::Tangent => {
+            let signed = [-1.0, 1.0];
+            let channels = vec![
+                channel("tangent.x", "cosine of the angle of the first axis of C from the tangent", signed),
+                channel("tangent.y", "its sine", signed),
+            ];
+            let directions = signs::directions(levels);
+            let level = |(level, own): (&Level<'_>, &Vec<[f32; 2]>)| MipLevel {
+                size: level.size,
+                values: own.iter().flatten().copied().collect(),
+            };
+            (channels, levels.iter().zip(&directions).map(level).collect())
         }
         Kind::Residual => residual(found, levels),
         Kind::Normalisation => normalisation(),

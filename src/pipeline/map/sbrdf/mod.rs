@@ -5,22 +5,25 @@
 
 mod colour;
 mod maps;
+mod refit;
 mod tell;
 mod texels;
 
 pub(super) use colour::Colours;
 pub(super) use maps::map;
+pub use refit::MeasuredLobes;
 pub use tell::{Ladder, Normalisation, Residual, SbrdfRecord};
 
 use super::MapError;
 use super::output::Map;
 use crate::cancel::{Cancel, Cancelled};
-use crate::maps::Level;
-use crate::maps::sbrdf::curve::{self as curves, Curve, Placed, Texel, mixture, sort};
+use crate::maps::sbrdf::curve::{self as curves, Curve, mixture};
 use crate::maps::sbrdf::fit::{Problem, start};
 use crate::maps::sbrdf::nodes::Directions;
 use crate::maps::sbrdf::tabulated::Tabulated;
+use crate::maps::{self as maps_, Level, Shape, Surface};
 use crate::plan::map::{MapRequest, SbrdfRequest};
+use refit::Footprints;
 
 /// What lobes are fitted to.
 pub(super) enum Target {
@@ -41,20 +44,32 @@ pub(super) struct Found {
     constants: bool,
     /// What reading between the fits costs.
     between: f64,
+    /// What was measured of the levels, against their footprints.
+    measured: Vec<Option<MeasuredLobes>>,
     problems: Problems,
 }
 
 /// The problem of a texel of the first level, to measure storage by.
 enum Problems {
-    Roughness { roughness: Vec<f32>, mean: [f64; curves::TERMS], request: SbrdfRequest },
+    /// Roughness and strength of each texel; of one width the strengths are not there.
+    Roughness {
+        places: Vec<[f32; 2]>,
+        stretched: bool,
+        mean: [f64; curves::TERMS],
+        request: SbrdfRequest,
+    },
     One(Box<Problem>),
 }
 
 impl Problems {
     fn at(&self, texel: usize) -> Problem {
         match self {
-            Problems::Roughness { roughness, mean, request } => {
-                curves::problem(f64::from(roughness[texel]), *mean, request.normalise)
+            Problems::Roughness { places, stretched, mean, request } => {
+                let [r, s] = places[texel].map(f64::from);
+                match stretched {
+                    true => curves::stretched(r, s, *mean, request.normalise),
+                    false => curves::problem(r, *mean, request.normalise),
+                }
             }
             Problems::One(problem) => (**problem).clone(),
         }
@@ -63,9 +78,9 @@ impl Problems {
 
 /// Fits lobes to the texels of all levels.
 pub(super) fn find(
-    sbrdf: &SbrdfRequest,
+    (request, sbrdf): (&MapRequest, &SbrdfRequest),
     target: &Target,
-    levels: &[Level<'_>],
+    (surface, levels): (&Surface, &[Level<'_>]),
     cancel: &Cancel,
 ) -> Result<Found, Cancelled> {
     match target {
@@ -73,16 +88,27 @@ pub(super) fn find(
             let (f0, diffuse) = colours.means();
             let mean = mixture(f0, diffuse);
             let range = range(levels);
-            let fit = |k: usize| Curve::new(range, mean, k, sbrdf.normalise, cancel);
+            let stretched = request.filter.shape == Shape::Anisotropic;
+            let most = if stretched { strongest(levels) } else { 0.0 };
+            let fit = |k: usize| match stretched {
+                true => Curve::stretched(range, most, mean, k, sbrdf.normalise, cancel),
+                false => Curve::new(range, mean, k, sbrdf.normalise, cancel),
+            };
             let curve = fewest(sbrdf, fit, Curve::largest)?;
-            let roughness = levels.first().map_or_else(Vec::new, |l| l.iter().map(|t| t.roughness).collect());
+            #[allow(clippy::cast_possible_truncation, reason = "rounded to f32 on purpose")]
+            let place = |t: maps_::Texel| colour::place(&t).map(|v| v as f32);
+            let places = levels.first().map_or_else(Vec::new, |l| l.iter().map(place).collect());
+            let mut flat = colours.levels(levels, &curve, cancel)?;
+            let footprints = Footprints { request, sbrdf, surface, colours, levels };
+            let measured = footprints.follow(&mut flat, cancel)?;
             let found = Found {
                 fitted: curve.lobes(),
                 lobes: curve.lobes(),
-                levels: colours.levels(levels, &curve, cancel)?,
+                levels: flat,
                 constants: sbrdf.constants(),
                 between: curve.between,
-                problems: Problems::Roughness { roughness, mean, request: sbrdf.clone() },
+                measured,
+                problems: Problems::Roughness { places, stretched, mean, request: sbrdf.clone() },
             };
             Ok(found.with(sbrdf.lobes))
         }
@@ -103,6 +129,11 @@ fn fewest<T>(
         }
     }
     fit(sbrdf.lobes)
+}
+
+/// The largest strength of all levels.
+fn strongest(levels: &[Level<'_>]) -> f64 {
+    levels.iter().flat_map(Level::iter).map(|t| colour::place(&t)[1]).fold(0.0, f64::max)
 }
 
 /// Least and largest roughness of all levels.
@@ -128,20 +159,14 @@ fn tabulated(sbrdf: &SbrdfRequest, table: &Tabulated, cancel: &Cancel) -> Result
         Ok(problem.finish(&problem.descend(&start(alpha, k), STEPS)))
     };
     let fit = fewest(sbrdf, fit, |f| f.all())?;
-    let lobe = |j: usize| Placed {
-        lobe: fit.shapes[j].lobe(),
-        albedo: [0, 1, 2].map(|c| fit.albedos[c][j + 1]),
-        constant: fit.constants[j],
-    };
-    let mut lobes: Vec<Placed> = (0..fit.shapes.len()).map(lobe).collect();
-    sort(&mut lobes);
-    let texel = Texel { diffuse: [0, 1, 2].map(|c| fit.albedos[c][0]), lobes, residual: fit.all() };
+    let texel = curves::placed(&fit);
     let found = Found {
         fitted: fit.shapes.len(),
         lobes: fit.shapes.len(),
         levels: vec![([1, 1], texels::flat(&texel))],
         constants: sbrdf.constants(),
         between: 0.0,
+        measured: Vec::new(),
         problems: Problems::One(Box::new(problem)),
     };
     Ok(found.with(sbrdf.lobes))

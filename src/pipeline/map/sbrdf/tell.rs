@@ -1,6 +1,6 @@
 //! What the files say of the lobes: gauge, normalisation, norm, errors, and the ladder of powers.
 
-use super::{Found, maps, texels};
+use super::{Found, MeasuredLobes, maps, texels};
 use crate::maps::sbrdf::ladder::{self, Rung};
 use crate::maps::sbrdf::nodes::{GRAZING, LIGHTS};
 use crate::maps::sbrdf::{EXPONENTS, NORMALISATION, Normalise};
@@ -54,6 +54,9 @@ pub struct Residual {
     pub mean: f64,
     /// Largest.
     pub largest: f64,
+    /// The same against what the footprints of the level reflect; none of the first level.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub measured: Option<MeasuredLobes>,
 }
 
 /// The table of the integrals, and how it is read.
@@ -86,11 +89,12 @@ pub struct Ladder {
 pub(super) fn record(request: &SbrdfRequest, found: &Found, storage: [f64; 2]) -> SbrdfRecord {
     let incident = request.normalise == Normalise::Incident;
     let stride = texels::stride(found.lobes);
-    let level = |(_, values): &texels::Flat| {
+    let level = |(k, (_, values)): (usize, &texels::Flat)| {
         let all = || values.chunks_exact(stride).map(|t| f64::from(t[texels::RESIDUAL]));
         Residual {
             mean: all().sum::<f64>() / all().count().max(1) as f64,
             largest: all().fold(0.0, f64::max),
+            measured: found.measured.get(k).copied().flatten(),
         }
     };
     let table = ladder::table();
@@ -120,7 +124,7 @@ pub(super) fn record(request: &SbrdfRequest, found: &Found, storage: [f64; 2]) -
              {LIGHTS} lights of equal projected solid angle and one at cosine {} with the share {}",
             GRAZING[0], GRAZING[1]
         ),
-        levels: found.levels.iter().map(level).collect(),
+        levels: found.levels.iter().enumerate().map(level).collect(),
         between: found.between,
         storage,
         normalisation: Normalisation {
