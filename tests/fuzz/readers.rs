@@ -50,8 +50,8 @@ pub(super) static READERS: &[Reader] = &[
         id: "rows",
         covers: &[],
         seeds: || {
-            let rows = "model,params_json,wi_theta,wi_phi,wo_theta,wo_phi\nggx,\"{\"\"alpha\"\": 0.3}\",0.5,0,0.4,1\nlambert,,1,0,1,\n";
-            let function = "model,params_json,wi_theta,wi_phi,wo_theta,wo_phi,value\nfresnel-dielectric,\"{\"\"eta\"\": 1.5}\",0.1,,,,7\n";
+            let rows = "model,params_json,wi_theta,wi_phi,wo_theta,wo_phi\nggx,\"{\"\"alpha\"\": 0.3}\",0.5,0,0.4,1\nlambert,,1,0,1,0\n";
+            let function = "model,params_json,wi_theta,wi_phi,wo_theta,wo_phi\nfresnel-dielectric,\"{\"\"eta\"\": 1.5}\",0.1,,,\n";
             vec![rows.into(), function.into()]
         },
         words: &[
