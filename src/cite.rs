@@ -15,7 +15,8 @@ pub struct Cite {
 
 macro_rules! cites {
     ($($(#[$doc:meta])* $name:ident = $key:literal, $title:literal, $year:literal, $link:literal;)*) => {
-        $($(#[$doc])* pub const $name: Cite = Cite { key: $key, title: $title, year: $year, link: $link };)*
+        $($(#[$doc])* #[cfg(feature = "unstable")] pub const $name: Cite = Cite { key: $key, title: $title, year: $year, link: $link };)*
+        $($(#[$doc])* #[cfg(not(feature = "unstable"))] pub(crate) const $name: Cite = Cite { key: $key, title: $title, year: $year, link: $link };)*
         /// Every source, in alphabetical order of its constant.
         pub const ALL: &[Cite] = &[$($name),*];
     };

@@ -31,6 +31,17 @@
 //! [`bake`] takes a request and gives values, errors and axes in memory; [`pipeline::Baked::encode`] makes a file of them. A build
 //! script calls [`build::recipe`].
 
+// What only tests and benchmarks ask of a room is idle where they cannot reach it.
+#![cfg_attr(
+    not(feature = "unstable"),
+    allow(
+        dead_code,
+        unused_imports,
+        rustdoc::private_intra_doc_links,
+        reason = "open with the feature `unstable`"
+    )
+)]
+
 pub mod build;
 pub mod cancel;
 pub mod cite;
@@ -42,7 +53,6 @@ pub mod grid;
 pub mod guide;
 pub mod maps;
 pub mod models;
-pub mod picture;
 pub mod pipeline;
 pub mod plan;
 pub mod recipe;
@@ -55,31 +65,31 @@ pub mod verify;
 #[cfg(feature = "unstable")]
 pub mod functions;
 #[cfg(not(feature = "unstable"))]
-#[allow(dead_code, unreachable_pub, unused_imports, reason = "open with the feature `unstable`")]
 mod functions;
 
 #[cfg(feature = "unstable")]
 pub mod integrate;
 #[cfg(not(feature = "unstable"))]
-#[allow(dead_code, unreachable_pub, unused_imports, reason = "open with the feature `unstable`")]
 mod integrate;
 
 #[cfg(feature = "unstable")]
 pub mod math;
 #[cfg(not(feature = "unstable"))]
-#[allow(dead_code, unreachable_pub, unused_imports, reason = "open with the feature `unstable`")]
 mod math;
+
+#[cfg(feature = "unstable")]
+pub mod picture;
+#[cfg(not(feature = "unstable"))]
+mod picture;
 
 #[cfg(feature = "unstable")]
 pub mod report;
 #[cfg(not(feature = "unstable"))]
-#[allow(dead_code, unreachable_pub, unused_imports, reason = "open with the feature `unstable`")]
 mod report;
 
 #[cfg(feature = "unstable")]
 pub mod terms;
 #[cfg(not(feature = "unstable"))]
-#[allow(dead_code, unreachable_pub, unused_imports, reason = "open with the feature `unstable`")]
 mod terms;
 
 pub use pipeline::bake;

@@ -11,7 +11,7 @@ use brdfbake::cancel::Cancel;
 use brdfbake::encode::atomic::{TEMPORARY, WriteError, sweep, write_all};
 use brdfbake::encode::diff::{self, Tolerance};
 use brdfbake::encode::diff_files::{self, DiffError, FileDiff, PathDiff};
-use brdfbake::encode::diff_json::first_difference;
+use brdfbake::encode::first_difference;
 use brdfbake::encode::read::{Image, Plane, Sample, read_bytes};
 use brdfbake::encode::{Storage, encoder};
 use brdfbake::grid::Provenance;

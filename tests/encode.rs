@@ -8,8 +8,8 @@
 
 use crate::sample::{channel, file, hard, provenance, table};
 use brdfbake::encode::read::{Claim, Sample, read_bytes};
-use brdfbake::encode::storage::{QuantiseError, STORAGES, Storage};
 use brdfbake::encode::{ENCODERS, EncodeError, EncodeInput, Label, encoder, quantise_table};
+use brdfbake::encode::{QuantiseError, STORAGES, Storage};
 use brdfbake::grid::{Axis, Channel, Grid, Table, Texel};
 use proptest::prelude::*;
 

@@ -46,13 +46,16 @@ fn variable(name: &str) -> Option<String> {
 /// Computes `truth_calibration.csv` and `truth_test.csv`; rows that they hold already are kept.
 ///
 /// `HONESTY_DRAWS` draws a model (100) that have a truth, of `HONESTY_MODELS` only if given (ids, by commas), of `HONESTY_SET` only.
+/// With `HONESTY_SEED`, a number, they are other draws, for `truth_fresh.csv`: `HONESTY_FILE` of the test below reads it.
 #[test]
 #[ignore = "long: an hour on two cores; writes tests/honesty/truth_*.csv"]
 fn compute_truths() {
     let draws: usize = variable("HONESTY_DRAWS").map_or(100, |n| n.parse().unwrap());
     let only = variable("HONESTY_MODELS");
     let set = variable("HONESTY_SET");
-    for (name, seed) in [("calibration", draw::CALIBRATION), ("test", draw::TEST)] {
+    let fresh = variable("HONESTY_SEED").map(|seed| ("fresh", seed.parse().unwrap()));
+    let kept = [("calibration", draw::CALIBRATION), ("test", draw::TEST)];
+    for (name, seed) in fresh.map_or(kept.to_vec(), |f| vec![f]) {
         if set.as_deref().is_some_and(|s| s != name) {
             continue;
         }

@@ -11,7 +11,6 @@
 //! # Channels
 //! EXR channels carry the ids of the table (`dfg.scale`), or with option `positional` or `y` the names that loaders of colours know; EXR
 //! sorts them by name, so readers look them up by name. PNG has no names: see [`png`] for the layouts.
-//!
 //! # Example
 //! ```
 //! use brdfbake::cancel::Cancel;
@@ -43,54 +42,73 @@
 //! ```
 //!
 //! # A new container
-//! One file, one `pub mod` line, one line in [`ENCODERS`].
+//! One file, one `mod` line, one line in [`ENCODERS`].
 
 mod apart;
+#[cfg(feature = "unstable")]
 pub mod atomic;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod atomic;
+#[cfg(feature = "unstable")]
 pub mod beside;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod beside;
 mod blocks;
-pub mod code;
+pub(crate) mod code;
 mod coding;
-pub mod csv;
-pub mod dds;
+pub(crate) mod csv;
+pub(crate) mod dds;
 mod dds_masks;
 mod dds_read;
 mod dfd;
+#[cfg(feature = "unstable")]
 pub mod diff;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod diff;
+#[cfg(feature = "unstable")]
 pub mod diff_files;
-pub mod diff_json;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod diff_files;
+pub(crate) mod diff_json;
 mod error;
-pub mod exr;
+pub(crate) mod exr;
 mod exr_chunks;
 mod exr_names;
 mod exr_read;
-pub mod hdr;
-pub mod ktx2;
+pub(crate) mod hdr;
+pub(crate) mod ktx2;
 mod ktx2_read;
-pub mod layout;
-pub mod merl;
-pub mod mips;
-pub mod npy;
+pub(crate) mod layout;
+pub(crate) mod merl;
+pub(crate) mod mips;
+pub(crate) mod npy;
 mod open;
+#[cfg(feature = "unstable")]
 pub mod option;
-pub mod pfm;
-pub mod png;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod option;
+pub(crate) mod pfm;
+pub(crate) mod png;
 mod png_read;
 mod quantise;
-pub mod raw;
+pub(crate) mod raw;
 pub mod read;
 mod stoppable;
-pub mod storage;
+pub(crate) mod storage;
 mod texels;
-pub mod text;
+pub(crate) mod text;
 
 pub use apart::raw_rgbd;
-pub use diff::{ImageDiff, Tolerance};
+pub use diff::{ChannelDiff, ImageDiff, Tolerance, Worst};
+pub use diff_json::{JsonDiff, first_difference};
 pub use error::EncodeError;
+pub use layout::Layout;
+pub use merl::Merl;
+pub use mips::{MipLevel, Mips};
 pub use option::{FILE_OPTIONS, FileOption, Shape};
 pub use quantise::{Quantised, RangeFault, Unstored, quantise_table, quantise_table_until};
 pub use read::{Image, ReadError};
-pub use storage::Storage;
+pub use storage::{QuantiseError, STORAGES, Storage};
 
 use crate::cancel::Cancel;
 use crate::grid::{Channel, Grid};
@@ -209,7 +227,7 @@ pub trait Encoder: Debug + Send + Sync {
     ///
     /// # Errors
     /// [`EncodeError`] for a value that has no stored form, or a container without pyramids.
-    fn encode_mips(&self, mips: &mips::Mips<'_>) -> Result<Vec<Vec<u8>>, EncodeError> {
+    fn encode_mips(&self, mips: &Mips<'_>) -> Result<Vec<Vec<u8>>, EncodeError> {
         Err(EncodeError::Unknown { id: format!("{}:{}", self.id(), mips.storage.id()) })
     }
     /// Makes the bytes of the file. The same input gives the same bytes.
@@ -231,7 +249,7 @@ pub static ENCODERS: &[&dyn Encoder] = &[
     &raw::Raw,
     &text::Text,
     &csv::Csv,
-    &merl::Merl,
+    &Merl,
     &code::Code(code::C),
     &code::Code(code::Cpp),
     &code::Code(code::Rust),

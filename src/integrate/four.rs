@@ -1,6 +1,6 @@
 //! The stopping rule for four views at a time: each lane is judged as [`stop`](super::stop) judges a view alone, and all climb together.
 
-use super::stop::{Estimate, MAX_CHANNELS, ROUNDING, Sums, Trust, share};
+use super::stop::{Estimate, MAX_CHANNELS, ROUNDING, Sums, Trust, share, unfinished};
 use crate::math::lanes::{LANES, Lanes};
 use std::ops::Range;
 
@@ -72,6 +72,7 @@ pub fn climb(
         }
     }
     for (lane, result) in results.iter_mut().enumerate() {
+        unfinished(&mut result.error[..channels.len()], tolerance);
         result.evaluations = evaluations;
         for (c, channel) in channels.iter().enumerate() {
             result.value[c] = coarse.iter().map(|panel| part(panel, channel, lane)).sum();

@@ -21,6 +21,9 @@ pub type Sums = [f64; MAX_CHANNELS];
 /// Rounding floor relative to the magnitude summed: a few hundred additions.
 pub const ROUNDING: f64 = 1.0 / (1u64 << 47) as f64;
 
+/// What the differences count for at the last level if they still miss the tolerance: gains are measured where a rule converges.
+const UNFINISHED: f64 = 2.0;
+
 /// Share of the differences of all channels that is added to each, so that one that agrees by chance does not pass.
 const SHARED: f64 = 0.1;
 
@@ -168,6 +171,11 @@ pub(super) fn share(difference: &mut [f64]) {
     difference.iter_mut().for_each(|d| *d += shared);
 }
 
+/// Raises the errors of the channels that miss the tolerance after the last level.
+pub(super) fn unfinished(error: &mut [f64], tolerance: f64) {
+    error.iter_mut().filter(|e| **e > tolerance).for_each(|e| *e *= UNFINISHED);
+}
+
 /// Climbs through `levels` (numbers of steps, passed to `at`) until every channel is within the tolerance, absolute; three levels at least.
 ///
 /// `at` fills a cleared [`Level`]. The result may miss the tolerance: its error then says so, and the caller decides.
@@ -205,6 +213,7 @@ pub fn climb<E>(
             break;
         }
     }
+    unfinished(&mut error[..channels], tolerance);
     let evaluations = coarse.evaluations.saturating_add(fine.evaluations);
     Ok(Estimate { value: coarse.total(), error, evaluations })
 }

@@ -6,25 +6,35 @@
 //! The manual is the page [`maps`](crate::guide::maps) of the guide.
 
 mod descent;
-pub mod filter;
-pub mod fit;
-pub mod footprint;
-pub mod lobe;
+pub(crate) mod filter;
+pub(crate) mod fit;
+pub(crate) mod footprint;
+pub(crate) mod lobe;
 mod nodes;
-pub mod reflected;
+pub(crate) mod reflected;
 mod round;
+#[cfg(feature = "unstable")]
 pub mod rules;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod rules;
+#[cfg(feature = "unstable")]
 pub mod sbrdf;
-pub mod signs;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod sbrdf;
+pub(crate) mod signs;
+#[cfg(feature = "unstable")]
 pub mod spec_gloss;
-pub mod surface;
-pub mod turned;
-pub mod two;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod spec_gloss;
+pub(crate) mod surface;
+pub(crate) mod turned;
+pub(crate) mod two;
 
 pub use filter::{FilterError, Level, Objective, Settings, Texel, filter};
 pub use fit::{Centre, Effort, Fitted, Fitter, Shape};
 pub use footprint::Footprint;
 pub use lobe::{Facet, Lobe};
-pub use rules::{RULES, Rule};
+pub use rules::{Method, RULES, Rule};
+pub use sbrdf::Normalise;
 pub use surface::{Convention, Field, Surface, TexelFault};
 pub use two::Wide;

@@ -3,14 +3,16 @@
 //! Recipe: `model = "kelemen-skin"`, `params = { m = 0.3, rho_s = 0.18 }`. The texture of its Beckmann factor is the table
 //! `kelemen-beckmann`.
 
-use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity, Sample, kelemen};
+use super::{
+    BATCH, Brdf, Known, Laws, ModelInfo, Nodes, Param, ParamError, Params, Preset, Quantity, Sample, kelemen,
+};
 use crate::cite;
 use crate::integrate::Chart;
 use crate::models::facets::HalfVectorLobe;
 use crate::models::microfacet::Fresnel;
 use crate::terms::skin_specular;
 use glam::{DVec2, DVec3};
-use std::f64::consts::FRAC_1_PI;
+use std::f64::consts::{FRAC_1_PI, PI};
 
 /// Registry entry.
 pub static INFO: ModelInfo = ModelInfo {
@@ -86,5 +88,15 @@ impl Brdf for Skin {
 
     fn chart(&self) -> Option<Chart> {
         self.lobe.chart()
+    }
+
+    /// PH is pi D: the lobe of Kelemen by the half vectors of the nodes.
+    fn eval_nodes(&self, nodes: &Nodes, out: &mut [f64; BATCH]) {
+        self.lobe.eval_nodes(nodes, out);
+        out[..nodes.len].iter_mut().for_each(|f| *f *= PI * self.scale);
+    }
+
+    fn own_error(&self, mu_o: f64) -> f64 {
+        PI * self.scale * self.lobe.own_error(mu_o)
     }
 }

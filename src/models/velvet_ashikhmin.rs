@@ -45,8 +45,8 @@ pub static INFO: ModelInfo = ModelInfo {
     build,
 };
 
-/// Cotangents in units of sigma between which the inverted Gaussian falls.
-const HEIGHTS: [f64; 3] = [0.6, 1.7, 4.0];
+/// Cotangents in units of sigma between which the inverted Gaussian falls; at the last of them it is below the rounding of any sum.
+const HEIGHTS: [f64; 4] = [0.6, 1.7, 4.0, 6.8];
 
 #[derive(Debug)]
 struct Velvet {

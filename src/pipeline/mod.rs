@@ -5,48 +5,74 @@
 
 mod advice;
 mod again;
+#[cfg(feature = "unstable")]
 pub mod audit;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod audit;
 mod companion;
-pub mod cost;
+pub(crate) mod cost;
 mod event;
 mod fit;
+#[cfg(feature = "unstable")]
 pub mod fresh;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod fresh;
 mod gather;
-pub mod golden;
+pub(crate) mod golden;
 mod in_memory;
 mod manifest;
+#[cfg(feature = "unstable")]
 pub mod map;
-#[cfg(feature = "scene")]
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod map;
+#[cfg(all(feature = "scene", feature = "unstable"))]
 pub mod materials;
+#[cfg(all(feature = "scene", not(feature = "unstable")))]
+pub(crate) mod materials;
+#[cfg(feature = "unstable")]
 pub mod memory;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod memory;
 mod memory_map;
 #[cfg(feature = "report")]
-pub mod pages;
+pub(crate) mod pages;
 #[cfg(feature = "report")]
 mod pages_map;
 #[cfg(all(feature = "report", feature = "scene"))]
-pub mod preview;
+pub(crate) mod preview;
 mod reached;
+#[cfg(feature = "unstable")]
 pub mod recheck;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod recheck;
 mod size;
+#[cfg(feature = "unstable")]
 pub mod suggest;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod suggest;
 mod table;
 mod texels;
 mod threads;
-pub mod transaction;
+pub(crate) mod transaction;
 mod work;
-#[cfg(feature = "scene")]
+#[cfg(all(feature = "scene", feature = "unstable"))]
 pub mod write_scene;
+#[cfg(all(feature = "scene", not(feature = "unstable")))]
+pub(crate) mod write_scene;
 
 pub use crate::plan::MANIFEST;
 pub use again::{CACHE_LIMIT, Cache, CacheSize, KeptIn};
 pub use companion::{Companion, Seen};
-pub use event::{Event, Extremum, MapPlanEntry, Phase, PlanEntry, Progress, Silent};
+pub use cost::Large;
+pub use event::{
+    ChoiceEntry, Event, Extremum, MapPlanEntry, Phase, PlanEntry, Progress, ReconstructionEntry, Silent,
+};
 pub use in_memory::{Baked, InMemoryError, bake, bake_until};
 pub use manifest::{FileRecord, Manifest, TableRecord};
+pub use map::{MapError, MapRecord};
 pub use reached::Reached;
 pub use threads::{MOST_THREADS, pool};
-pub use transaction::Recovery;
+pub use transaction::{Recovery, TransactionError};
 
 use crate::cancel::{Cancel, Cancelled};
 use crate::encode::{EncodeError, RangeFault};
@@ -56,7 +82,7 @@ use crate::verify::Finding;
 use again::Again;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
-use transaction::{Transaction, TransactionError, Waiting};
+use transaction::{Transaction, Waiting};
 use work::Work;
 
 /// Where to write and what to use for it.
@@ -161,7 +187,7 @@ pub enum PipelineError {
         map: String,
         /// Why.
         #[source]
-        error: Box<map::MapError>,
+        error: Box<MapError>,
     },
     /// Laws that do not hold and are not waived.
     #[error("{} broken; nothing was written", laws(.0.len()))]
@@ -227,7 +253,7 @@ pub enum PipelineError {
     },
     /// A plan so large that it was probably not meant.
     #[error("the plan is large: {0}. If that is meant, allow it (--yes-large)")]
-    Large(cost::Large),
+    Large(Large),
     /// More threads were asked for than are allowed.
     #[error("{from} = {jobs}: at most {limit} threads are allowed")]
     Jobs {

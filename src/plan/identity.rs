@@ -16,7 +16,7 @@ use serde_json::Value as Json;
 
 /// Version of the numbers: raised by any change after which the same request gives other texels, errors or bytes of files. What was
 /// kept of older versions is then baked anew.
-pub const NUMERICS: u32 = 3;
+pub const NUMERICS: u32 = 4;
 
 /// A file that the numbers of a table depend on.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -25,7 +25,10 @@ mod bind;
 pub(crate) mod canonical;
 pub(crate) mod fault;
 pub(crate) mod faults;
+#[cfg(feature = "unstable")]
 pub mod identity;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod identity;
 pub mod map;
 mod name;
 mod output;

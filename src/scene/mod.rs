@@ -37,7 +37,10 @@ mod needs;
 mod parse;
 mod reader;
 mod uri;
+#[cfg(feature = "unstable")]
 pub mod write;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod write;
 
 use crate::math::shown::show;
 use std::fmt;

@@ -1,56 +1,86 @@
 //! Bakeable tables: the trait, the registry, one file a table, and the one driver loop.
 //!
-//! To add a table: write `tables/NAME.rs` with a [`TableInfo`], add `pub mod NAME;` and one line to [`TABLES`].
+//! To add a table: write `tables/NAME.rs` with a [`TableInfo`], add `pub(crate) mod NAME;` and one line to [`TABLES`].
 
-pub mod albedo;
+pub(crate) mod albedo;
+#[cfg(feature = "unstable")]
 pub mod average_albedo;
-pub mod beer_lambert;
-pub mod blackbody;
-pub mod compensation;
-pub mod default_axes;
-pub mod dfg;
-pub mod diffusion_kernel;
-pub mod diffusion_profile;
-pub mod diffusion_sampling;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod average_albedo;
+pub(crate) mod beer_lambert;
+pub(crate) mod blackbody;
+pub(crate) mod compensation;
+pub(crate) mod default_axes;
+pub(crate) mod dfg;
+pub(crate) mod diffusion_kernel;
+pub(crate) mod diffusion_profile;
+pub(crate) mod diffusion_sampling;
+#[cfg(feature = "unstable")]
 pub mod driver;
-pub mod fresnel_conductor;
-pub mod fresnel_dielectric;
-pub mod fresnel_schlick;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod driver;
+pub(crate) mod fresnel_conductor;
+pub(crate) mod fresnel_dielectric;
+pub(crate) mod fresnel_schlick;
+#[cfg(feature = "unstable")]
 pub mod gaussian_fit;
-pub mod generalised_schlick;
-pub mod glass_compensation;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod gaussian_fit;
+pub(crate) mod generalised_schlick;
+pub(crate) mod glass_compensation;
+#[cfg(feature = "unstable")]
 pub mod importance;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod importance;
 pub mod integral;
-pub mod kelemen_beckmann;
+pub(crate) mod kelemen_beckmann;
+#[cfg(feature = "unstable")]
 pub mod ltc_fit;
-pub mod ltc_magnitude;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod ltc_fit;
+pub(crate) mod ltc_magnitude;
+#[cfg(feature = "unstable")]
 pub mod ltc_matrix;
-pub mod masking;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod ltc_matrix;
+pub(crate) mod masking;
 mod memo;
+#[cfg(feature = "unstable")]
 pub mod merl;
-pub mod metal;
-pub mod ndf;
-pub mod normals;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod merl;
+pub(crate) mod metal;
+pub(crate) mod ndf;
+pub(crate) mod normals;
 mod parts;
-pub mod phase_function;
-pub mod phase_sampling;
-pub mod preintegrated_skin;
+pub(crate) mod phase_function;
+pub(crate) mod phase_sampling;
+pub(crate) mod preintegrated_skin;
+#[cfg(feature = "unstable")]
 pub mod profile;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod profile;
 mod refine;
 mod restated;
-pub mod role;
-pub mod selection;
-pub mod sheen_ltc;
-pub mod sheen_scaling;
+pub(crate) mod role;
+pub(crate) mod selection;
+pub(crate) mod sheen_ltc;
+pub(crate) mod sheen_scaling;
 mod sides;
-pub mod skin_transmittance;
+pub(crate) mod skin_transmittance;
+#[cfg(feature = "unstable")]
 pub mod source;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod source;
 pub mod spec;
-pub mod spectrum;
+pub(crate) mod spectrum;
+#[cfg(feature = "unstable")]
 pub mod sweep;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod sweep;
 mod sweepable;
-pub mod thin_film;
-pub mod visibility;
+pub(crate) mod thin_film;
+pub(crate) mod visibility;
 
 use crate::grid::provenance::Residual;
 use crate::grid::{Axis, Channel, Table, table::named};
@@ -58,7 +88,8 @@ use crate::integrate::Estimate;
 use crate::math::figures::exact;
 use crate::models::Param;
 pub use default_axes::Setting;
-pub use role::Role;
+pub use driver::{BakeError, OnMiss};
+pub use role::{Lobe, OtherLobe, Role, Weight};
 pub use selection::Selection;
 pub use source::Source;
 pub use spec::{BindError, Bound, Spec};

@@ -5,37 +5,64 @@
 //! exists: it goes to the model, to a closed form, to visible-normal sampling with scrambled Sobol points ([`cross_check`]), or to
 //! the rules of [`honest`].
 
+#[cfg(feature = "unstable")]
 pub mod baseline;
-pub mod complement;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod baseline;
+pub(crate) mod complement;
+#[cfg(feature = "unstable")]
 pub mod converge;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod converge;
+#[cfg(feature = "unstable")]
 pub mod cross_check;
-pub mod energy;
-pub mod finding;
-pub mod finite;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod cross_check;
+pub(crate) mod energy;
+pub(crate) mod finding;
+pub(crate) mod finite;
+#[cfg(feature = "unstable")]
 pub mod honest;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod honest;
 mod linear;
-pub mod lobe;
+pub(crate) mod lobe;
 mod lobes;
-pub mod monotone;
-pub mod normalised;
+pub(crate) mod monotone;
+pub(crate) mod normalised;
 mod outcome;
-pub mod range;
-pub mod reciprocity;
+pub(crate) mod range;
+pub(crate) mod reciprocity;
+#[cfg(feature = "unstable")]
 pub mod reconstruction;
-pub mod reversible;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod reconstruction;
+pub(crate) mod reversible;
+#[cfg(feature = "unstable")]
 pub mod seeds;
-pub mod split;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod seeds;
+pub(crate) mod split;
+#[cfg(feature = "unstable")]
 pub mod stress;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod stress;
+#[cfg(feature = "unstable")]
 pub mod survey;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod survey;
+#[cfg(feature = "unstable")]
 pub mod tolerance;
-pub mod total;
+#[cfg(not(feature = "unstable"))]
+pub(crate) mod tolerance;
+pub(crate) mod total;
 mod walk;
 
 use crate::cancel::{Cancel, Cancelled, Steps, Tell, untold};
 use crate::grid::Table;
 use crate::grid::provenance::{LawRecord, Waiver};
 use crate::tables::{Bound, Spec, driver};
-pub use finding::Finding;
+pub use finding::{Finding, Severity, Verdict};
 pub use outcome::{Outcome, Seen, Watch};
 use rayon::prelude::*;
 

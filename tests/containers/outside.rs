@@ -2,8 +2,8 @@
 
 use super::support::{table, written};
 use brdfbake::cancel::Cancel;
+use brdfbake::encode::Layout;
 use brdfbake::encode::diff::{Pairing, Tolerance, images, images_by};
-use brdfbake::encode::layout::Layout;
 use brdfbake::encode::read::{Sample, read_bytes};
 use brdfbake::encode::{EncodeError, FileOption, Storage};
 use exr::prelude::{ReadChannels, ReadLayers, read};

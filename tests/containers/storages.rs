@@ -1,7 +1,7 @@
 //! Coupled storages against an exhaustive search and the formulas of their readers.
 
 use crate::tolerance::{DIGITS_LOST, near};
-use brdfbake::encode::storage::{QuantiseError, STORAGES, Storage};
+use brdfbake::encode::{QuantiseError, STORAGES, Storage};
 use proptest::prelude::*;
 
 const UNIT: [f64; 2] = [0.0, 1.0];

@@ -210,6 +210,21 @@ pub(crate) fn blinn_microfacet<'a>(n: f64, factor: Fresnel) -> Lobe<'a> {
     })
 }
 
+/// `A (1 + b (1 - h.z))^(-c)` in grooves; A from the integral of `D cos`, by quadrature in `ln(1 - h.z)`.
+pub(crate) fn abc<'a>(b: f64, c: f64, factor: Fresnel) -> Lobe<'a> {
+    let fall = move |t: f64| (-c * (b * t).ln_1p()).exp();
+    let edges = sorted(sharp(0.0), mark(1.0), [1.0 / b, 30.0 / b].map(mark).to_vec());
+    let unit =
+        crate::sweep::quad::SECOND.pieces(&edges, 0.0, &mut |at, _, _| (1.0 - at.x) * fall(at.x)).value;
+    let peak = 0.5 / (PI * unit);
+    let width = (2.0 / (b * (1.0 + (c - 2.0).max(0.0)))).sqrt().min(1.0);
+    general([width; 2], groove_lines(), move |p| {
+        // 1 - h.z = r^2 / (root (root + 1)), root = sqrt(1 + r^2)
+        let root = p.r.hypot(1.0);
+        factor.at(p.cos_d) * peak * fall((p.r / root) * (p.r / (root + 1.0))) * grooves(p)
+    })
+}
+
 pub(crate) fn ashikhmin_shirley<'a>(rs: f64, nu: f64, nv: f64, mu: f64) -> Lobe<'a> {
     let scale = ((nu + 1.0) * (nv + 1.0)).sqrt() / (8.0 * PI);
     let factor = Fresnel::Schlick { f0: rs, f90: 1.0 };

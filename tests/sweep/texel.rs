@@ -60,7 +60,12 @@ impl Texel {
     fn bound(&self, len: usize) -> Result<Bound, tables::BindError> {
         let axis = |id: &String| {
             let axis = Axis::new(Quantity::find(id).unwrap(), len, Place::Endpoint);
-            if id == "gaussian" { axis.over([0.0, len as f64 - 1.0]) } else { axis }
+            match (id.as_str(), self.kind.as_str()) {
+                ("gaussian", _) => axis.over([0.0, len as f64 - 1.0]),
+                // some lobes have no fit at mu = 0, and are refused there
+                ("mu", "ltc-matrix") => axis.over([0.01, 1.0]),
+                _ => axis,
+            }
         };
         let request = Request {
             kind: self.kind.clone(),

@@ -20,19 +20,9 @@ pub(crate) type Truth = Result<(f64, f64), &'static str>;
 /// Models without draws in `truth_test.csv`, and why.
 pub(crate) const WITHOUT: &[(&str, &str)] = &[
     (
-        "abc",
-        "a rule for its long tail in grooves is not written: known values of 50 digits and the law honest hold it",
-    ),
-    (
-        "kelemen-matte",
-        "a lobe over its own albedo, minutes a draw: tests/compensated.rs and the law honest hold it",
-    ),
-    (
         "kulla-conty",
         "a curve and its mean for every draw, minutes each: tests/compensated.rs and the law honest hold it",
     ),
-    ("turquin", "as kulla-conty"),
-    ("fdez-aguera", "as kulla-conty"),
     (
         "gltf",
         "a sum of lobes with the curve of its sheen: its known values are of a nested rule of their own",
@@ -158,6 +148,7 @@ pub(crate) fn half_vector(draw: &Draw) -> Option<(Lobe<'static>, f64)> {
         "torrance-sparrow" => lobe::torrance_sparrow(number("alpha"), schlick_of(p), 1.0),
         "cook-torrance-1982" => lobe::torrance_sparrow(number("alpha"), schlick_of(p), 4.0),
         "blinn-phong-microfacet" => lobe::blinn_microfacet(number("n"), schlick_of(p)),
+        "abc" => lobe::abc(number("b"), number("c"), schlick_of(p)),
         "ggx-schlick-masking" => lobe::schlick_masked(number("alpha"), p.choice("k").unwrap(), schlick_of(p)),
         "kelemen" => lobe::kelemen(number("alpha"), schlick_of(p), 1.0),
         "kelemen-skin" => {

@@ -110,7 +110,7 @@ fn file(model: &str, params: &str) -> Vec<u8> {
         ..Request::default()
     };
     let table = TableRequest {
-        outputs: Some(vec![Output::new(&brdfbake::encode::merl::Merl, Storage::Float)]),
+        outputs: Some(vec![Output::new(&brdfbake::encode::Merl, Storage::Float)]),
         reconstruction: Some(false),
         ..TableRequest::new("measured", request)
     };

@@ -9,6 +9,7 @@ mod judge;
 mod output;
 pub mod sbrdf;
 
+pub use crate::picture::{Space, Wrap};
 pub(crate) use images::ANISOTROPY;
 pub use input::{AnisotropyInput, FromLobe, Input, RoughnessInput, Second, Source};
 pub use output::{Held, Kind, Output};
@@ -22,7 +23,7 @@ use crate::encode::mips;
 use crate::functions::conversion::By;
 use crate::maps::sbrdf::{NORMALISATION, Normalise};
 use crate::maps::{self, Centre, Convention, Effort, Objective, Shape};
-use crate::picture::{Space, Wrap, halved};
+use crate::picture::halved;
 use serde_json::{Value as Json, json};
 
 /// What the map of the roughness holds beside it.
