@@ -4,7 +4,7 @@
 
 use crate::tolerance::DIGITS_LOST;
 use brdfbake::functions::{self, Angles, EvalError, FunctionError, Subject};
-use brdfbake::models::{MODELS, Quantity};
+use brdfbake::models::{KnownValue, MODELS};
 use brdfbake::verify::tolerance;
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeSet;
@@ -123,7 +123,7 @@ fn known_values_are_reproduced() {
                 .iter()
                 .map(|(k, v)| ((*k).to_owned(), serde_json::from_str(v).unwrap()))
                 .collect();
-            let Quantity::Value(angles) = known.what else { panic!("{}: not a value", info.id) };
+            let KnownValue::Value(angles) = known.what else { panic!("{}: not a value", info.id) };
             let got = Subject::new(info.id, &params).unwrap().value(&Angles::all(angles)).unwrap();
             let error = (got - known.value).abs() / known.value.abs();
             assert!(

@@ -4,7 +4,7 @@
 use crate::tolerance::{DIGIT_LOST, LIMIT_NEAR, RECIPROCITY, near};
 use brdfbake::integrate::View;
 use brdfbake::math::frame;
-use brdfbake::models::{Kind, MODELS, ModelInfo, ParamError, Params, Quantity};
+use brdfbake::models::{Kind, KnownValue, MODELS, ModelInfo, ParamError, Params};
 use brdfbake::tables::TexelError;
 use brdfbake::tables::integral::{Functional, integrate};
 use brdfbake::verify::seeds::Seeds;
@@ -25,10 +25,10 @@ fn known_values_are_reproduced() {
             let model = (info.build)(&params(info, known.params)).unwrap();
             let what = format!("{} {:?} {:?}", info.id, known.what, known.params);
             let got = match known.what {
-                Quantity::Value([ti, pi, to, po]) => {
+                KnownValue::Value([ti, pi, to, po]) => {
                     model.eval(frame::spherical(to, po), frame::spherical(ti, pi))
                 }
-                Quantity::Albedo(mu) => {
+                KnownValue::Albedo(mu) => {
                     // by the chart and, where there is one, by the reduction
                     let tolerance = (0.1 * known.relative * known.value).max(1e-13);
                     let both = [Functional::One, Functional::One];

@@ -3,7 +3,7 @@
 
 use brdfbake::functions;
 use brdfbake::grid::Quantity;
-use brdfbake::models::{Kind, MODELS, Param, Params, Preset};
+use brdfbake::models::{DefaultValue, Kind, MODELS, Param, Params};
 use brdfbake::tables::{ModelUse, TABLES};
 use brdfbake::verify::LAWS;
 use std::collections::BTreeSet;
@@ -36,10 +36,10 @@ fn check_params(owner: &str, params: &[Param]) {
             Kind::Number { min, max, preset } => {
                 assert!(min < max, "{owner}.{}: empty range", p.id);
                 match preset {
-                    Preset::Value(v) => {
+                    DefaultValue::Value(v) => {
                         assert!((min..=max).contains(&v), "{owner}.{}: default out of range", p.id)
                     }
-                    Preset::Of(id) => {
+                    DefaultValue::Of(id) => {
                         assert!(params[..i].iter().any(|q| q.id == id), "{owner}.{}: `{id}`", p.id)
                     }
                 }

@@ -7,7 +7,7 @@ use crate::functions::{self, FunctionInfo};
 use crate::grid::quantity::unit_words;
 use crate::grid::{Axis, Quantity};
 use crate::math::figures::exact;
-use crate::models::{self, Kind, ModelInfo, Param, Preset};
+use crate::models::{self, DefaultValue, Kind, ModelInfo, Param};
 use crate::recipe::{self, ENGINES, PRESETS};
 use crate::tables::{self, Layout, ModelUse, Selection, Setting, TableInfo, source};
 use crate::verify;
@@ -243,8 +243,8 @@ fn params(params: &[Param]) -> String {
         let range = match p.kind {
             Kind::Number { min, max, preset } => {
                 let default = match preset {
-                    Preset::Value(v) => exact(v),
-                    Preset::Of(id) => id.to_owned(),
+                    DefaultValue::Value(v) => exact(v),
+                    DefaultValue::Of(id) => id.to_owned(),
                 };
                 let unit = unit_words(p.unit).map_or_else(String::new, |u| format!(" {u}"));
                 let list = if p.coloured { ", or a list of three: red, green, blue" } else { "" };

@@ -3,7 +3,7 @@
 use super::{Exit, Failure, albedo, bake, output};
 use crate::cancel::Cancel;
 use crate::math::figures::exact;
-use crate::report::analytic::{self, DEGREES, Fit, FitError, Form, Lang};
+use crate::report::analytic::{self, DEGREES, FitError, FittedFormula, Form, Lang};
 use crate::tables::Bound;
 use crate::tables::spec::Request;
 
@@ -96,8 +96,8 @@ pub fn run(args: &Args, cancel: &Cancel) -> Result<Exit, Failure> {
 fn best(
     degrees: std::ops::RangeInclusive<usize>,
     args: &Args,
-    one: impl Fn(usize) -> Result<Fit, FitError>,
-) -> Result<Fit, Failure> {
+    one: impl Fn(usize) -> Result<FittedFormula, FitError>,
+) -> Result<FittedFormula, Failure> {
     let practical = args.domain == Domain::Practical;
     let most = *degrees.end();
     let mut reached: Option<f64> = None;

@@ -1,7 +1,7 @@
 //! What would be baked, at what cost, whoever asks for it: said by `plan` and by `bake --dry-run`.
 
 use crate::math::figures::short;
-use crate::models::{Kind, Preset};
+use crate::models::{DefaultValue, Kind};
 use crate::pipeline::cost::{self, Cost};
 use crate::pipeline::memory;
 use crate::plan::{Plan, PlannedMap, PlannedTable};
@@ -110,7 +110,9 @@ fn is_default(table: &PlannedTable, id: &str, value: &Json) -> bool {
     let model = spec.model.as_ref().map_or(&[][..], |(info, _)| info.params);
     let param = spec.kind.params.iter().chain(model).find(|p| p.is_called(id));
     param.is_some_and(|p| match p.kind {
-        Kind::Number { preset: Preset::Value(v), .. } => value.as_f64().is_some_and(|x| (x - v).abs() <= 0.0),
+        Kind::Number { preset: DefaultValue::Value(v), .. } => {
+            value.as_f64().is_some_and(|x| (x - v).abs() <= 0.0)
+        }
         Kind::Choice(words) => value.as_str() == words.first().copied(),
         _ => false,
     })

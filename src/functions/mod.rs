@@ -23,7 +23,7 @@ pub mod thin_film;
 use crate::cite::Cite;
 use crate::math::figures::{exact, significant};
 use crate::math::frame;
-use crate::models::{self, Alias, Implied, Known, Param, ParamError, Params, Preset, Quantity};
+use crate::models::{self, Alias, DefaultValue, Implied, Known, KnownValue, Param, ParamError, Params};
 pub use evaluate::{EvalError, Subject};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -70,7 +70,7 @@ pub struct FunctionInfo {
     pub notes: &'static str,
     /// Other names, with the parameters that they imply.
     pub also: &'static [Alias],
-    /// Values known from elsewhere; `params` are JSON, angles as in [`Quantity::Value`].
+    /// Values known from elsewhere; `params` are JSON, angles as in [`KnownValue::Value`].
     pub known: &'static [Known],
     /// The function. Every input that `inputs` names is there.
     pub eval: fn(&Params, &At) -> Result<f64, FunctionError>,
@@ -115,7 +115,7 @@ pub struct Angles {
 }
 
 impl Angles {
-    /// All four, in the order of [`Quantity::Value`].
+    /// All four, in the order of [`KnownValue::Value`].
     #[must_use]
     pub fn all([wi_theta, wi_phi, wo_theta, wo_phi]: [f64; 4]) -> Angles {
         let [wi_theta, wi_phi, wo_theta, wo_phi] = [wi_theta, wi_phi, wo_theta, wo_phi].map(Some);
@@ -277,7 +277,7 @@ pub fn find(name: &str) -> Option<(&'static FunctionInfo, Implied)> {
 
 /// A number parameter whose symbol is its id.
 const fn number(id: &'static str, doc: &'static str, range: [f64; 2], default: f64) -> Param {
-    Param::number(id, id, doc, range, Preset::Value(default))
+    Param::number(id, id, doc, range, DefaultValue::Value(default))
 }
 
 /// The same with a unit.
@@ -301,7 +301,7 @@ const fn known(
     relative: f64,
     source: &'static str,
 ) -> Known {
-    Known { what: Quantity::Value(angles), params, value, relative, source }
+    Known { what: KnownValue::Value(angles), params, value, relative, source }
 }
 
 /// Another name without implied parameters.

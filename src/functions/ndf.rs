@@ -2,7 +2,7 @@
 
 use super::{FunctionInfo, Input, NO_ANGLES, REFERENCE, alias, known, number, theta};
 use crate::cite;
-use crate::models::{Param, Preset};
+use crate::models::{DefaultValue, Param};
 use crate::terms::beckmann::Beckmann;
 use crate::terms::ggx::Ggx;
 use crate::terms::smith::Ndf;
@@ -15,14 +15,14 @@ pub(super) const ALPHA_X: Param = Param::number(
     "alpha_x",
     "width along the tangent; equal to alpha unless given",
     [1e-8, 2.0],
-    Preset::Of("alpha"),
+    DefaultValue::Of("alpha"),
 );
 pub(super) const ALPHA_Y: Param = Param::number(
     "alpha_y",
     "alpha_y",
     "width along the bitangent; equal to alpha unless given",
     [1e-8, 2.0],
-    Preset::Of("alpha"),
+    DefaultValue::Of("alpha"),
 );
 pub(super) const ROUGHNESS: Param =
     number("roughness", "roughness of the cloth", [1e-3, 1.0], 0.5).also(&["r"]);

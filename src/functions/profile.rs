@@ -3,7 +3,7 @@
 use super::{FunctionInfo, Input, NO_ANGLES, REFERENCE, alias, alias_with, known, measured, number};
 use crate::cite;
 use crate::models::{Param, ParamError, Params};
-use crate::terms::burley_diffusion::{self, Fit};
+use crate::terms::burley_diffusion::{self, ShapeFit};
 use crate::terms::dipole::Dipole;
 use crate::terms::skin::{self, Channel};
 use crate::terms::skin_specular;
@@ -31,11 +31,11 @@ fn channel(p: &Params) -> Result<Channel, ParamError> {
     })
 }
 
-fn fit(p: &Params) -> Result<Fit, ParamError> {
+fn fit(p: &Params) -> Result<ShapeFit, ParamError> {
     Ok(match p.choice("fit")? {
-        "searchlight" => Fit::Searchlight,
-        "diffuse" => Fit::Diffuse,
-        _ => Fit::DiffuseMeanFreePath,
+        "searchlight" => ShapeFit::Searchlight,
+        "diffuse" => ShapeFit::Diffuse,
+        _ => ShapeFit::DiffuseMeanFreePath,
     })
 }
 

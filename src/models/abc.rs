@@ -9,7 +9,7 @@
 use super::facets::{Facets, HalfVectorLobe, vcavity_visibility};
 use super::grooves;
 use super::microfacet::{F0, F90, Fresnel};
-use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params};
 use crate::cite;
 use crate::integrate::Chart;
 use crate::math::frame::HalfVector;
@@ -29,8 +29,8 @@ pub static INFO: ModelInfo = ModelInfo {
         (cite::TORRANCE_SPARROW_1967, "Eq. 16 to 18 (G)"),
     ],
     params: &[
-        Param::number("b", "b", "sharpness of the peak", [1.0, 1e7], Preset::Value(1000.0)),
-        Param::number("c", "c", "steepness of the tail", [0.1, 20.0], Preset::Value(1.0)),
+        Param::number("b", "b", "sharpness of the peak", [1.0, 1e7], DefaultValue::Value(1000.0)),
+        Param::number("c", "c", "steepness of the tail", [0.1, 20.0], DefaultValue::Value(1.0)),
         F0,
         F90,
     ],
@@ -39,14 +39,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[],
     known: &[
         Known {
-            what: Quantity::Value([0.5, 0.0, 0.5, 3.140_625]),
+            what: KnownValue::Value([0.5, 0.0, 0.5, 3.140_625]),
             params: &[("b", "100"), ("c", "1")],
             value: 1.411_076_931_579_924_813,
             relative: 1e-12,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("b", "1"), ("c", "1"), ("f0", "1")],
             value: 0.440_869_153_775_126_178,
             relative: 1e-10,

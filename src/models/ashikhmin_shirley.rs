@@ -9,7 +9,7 @@
 use super::ashikhmin_shirley_diffuse::{RD, RS, Substrate};
 use super::ashikhmin_shirley_specular::{NU, NV, Specular};
 use super::lobes::{Diffuse, Part, Sum};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Alias, Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 use crate::terms::schlick;
 
@@ -28,14 +28,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "ashikhmin_shirley_total", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("rd", "0.5"), ("rs", "0.046875"), ("nu", "100"), ("nv", "10")],
             value: 0.141_198_322_192_353_6,
             relative: 1e-13,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("rd", "0"), ("rs", "1"), ("nu", "10"), ("nv", "10")],
             value: 0.695_707_244_140_319_9,
             relative: 1e-11,

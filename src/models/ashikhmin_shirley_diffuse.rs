@@ -5,7 +5,7 @@
 //! Recipe: `model = "ashikhmin-shirley-diffuse"`, `params = { rd = 0.5, rs = 0.05 }`.
 
 use super::lobes::{Diffuse, Reflector};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Alias, Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params};
 use crate::cite;
 use crate::integrate::Chart;
 use glam::DVec3;
@@ -26,14 +26,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "ashikhmin_shirley_diffuse", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("rd", "1"), ("rs", "0")],
             value: 0.296_067_690_965_64,
             relative: 1e-14,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("rd", "1"), ("rs", "0")],
             value: 31.0 / 32.0,
             relative: 1e-13,
@@ -46,11 +46,16 @@ pub static INFO: ModelInfo = ModelInfo {
 
 /// `rd`.
 pub(super) const RD: Param =
-    Param::number("rd", "Rd", "diffuse reflectance", [0.0, 1.0], Preset::Value(0.5)).also(&["Rd"]);
+    Param::number("rd", "Rd", "diffuse reflectance", [0.0, 1.0], DefaultValue::Value(0.5)).also(&["Rd"]);
 /// `rs`.
-pub(super) const RS: Param =
-    Param::number("rs", "Rs", "specular reflectance at normal incidence", [0.0, 1.0], Preset::Value(0.05))
-        .also(&["Rs"]);
+pub(super) const RS: Param = Param::number(
+    "rs",
+    "Rs",
+    "specular reflectance at normal incidence",
+    [0.0, 1.0],
+    DefaultValue::Value(0.05),
+)
+.also(&["Rs"]);
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     Ok(Box::new(Diffuse(Substrate::new(params)?)))

@@ -6,7 +6,9 @@
 //! Recipe: `model = "ashikhmin-shirley-specular"`, `params = { rs = 0.05, nu = 1000, nv = 10 }`.
 
 use super::ashikhmin_shirley_diffuse::RS;
-use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity, Sample};
+use super::{
+    Alias, Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params, Sample,
+};
 use crate::cite;
 use crate::integrate::{BATCH, Chart, Edge, FacetLobe, Nodes};
 use crate::math::{frame, special};
@@ -31,14 +33,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "ashikhmin_shirley_specular", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("rs", "0.046875"), ("nu", "100"), ("nv", "10")],
             value: 0.000_103_563_216_540_786_91,
             relative: 1e-12,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("rs", "1"), ("nu", "10"), ("nv", "10")],
             value: 0.695_707_244_140_319_9,
             relative: 1e-11,
@@ -51,14 +53,14 @@ pub static INFO: ModelInfo = ModelInfo {
 
 /// `nu`.
 pub(super) const NU: Param =
-    Param::number("nu", "nu", "exponent along the tangent", [0.0, 1e7], Preset::Value(100.0)).swept(
+    Param::number("nu", "nu", "exponent along the tangent", [0.0, 1e7], DefaultValue::Value(100.0)).swept(
         "nu",
         [1.0, 1000.0],
         0.25,
     );
 /// `nv`.
 pub(super) const NV: Param =
-    Param::number("nv", "nv", "exponent along the bitangent", [0.0, 1e7], Preset::Of("nu"));
+    Param::number("nv", "nv", "exponent along the bitangent", [0.0, 1e7], DefaultValue::Of("nu"));
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     Ok(Box::new(Specular::new(params)?))

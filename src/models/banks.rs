@@ -10,7 +10,9 @@
 
 use super::lobes::{cosine_pdf, cosine_sample};
 use super::phong::{KD, KS};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity, Sample};
+use super::{
+    Alias, Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params, Sample,
+};
 use crate::cite;
 use crate::integrate::Chart;
 use crate::math::{frame, special};
@@ -29,8 +31,8 @@ pub static INFO: ModelInfo = ModelInfo {
     params: &[
         KD,
         KS,
-        Param::number("p", "p", "exponent of the diffuse term", [0.0, 1e3], Preset::Value(4.75)),
-        Param::number("q", "q", "exponent of the specular term", [0.0, 1e7], Preset::Value(40.0)),
+        Param::number("p", "p", "exponent of the diffuse term", [0.0, 1e3], DefaultValue::Value(4.75)),
+        Param::number("q", "q", "exponent of the specular term", [0.0, 1e7], DefaultValue::Value(40.0)),
     ],
     laws: Laws { reciprocal: false, passive: false, isotropic: false },
     notes: "A shading value, not a BRDF: it includes its own falloff. The diffuse term depends on wi only, so it is not reciprocal; \
@@ -38,14 +40,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "banks_seed_shading", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("kd", "0.5"), ("ks", "0.5"), ("p", "4.75"), ("q", "16")],
             value: 0.455_687_532_087_703_9,
             relative: 1e-13,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("kd", "0.5"), ("ks", "0.5"), ("p", "2"), ("q", "4")],
             value: 3.0 * PI / 8.0 + 5.0 * PI / 16.0,
             relative: 1e-12,

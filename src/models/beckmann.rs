@@ -4,7 +4,7 @@
 //! Typical widths: 0.001 looks like a mirror, 0.1 like satin, 0.7 like chalky metal.
 
 use super::microfacet::{self, ALPHA, ALPHA_X, ALPHA_Y, Beckmann, F0, F90, Fresnel, MASKING};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Alias, Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 
 /// Registry entry.
@@ -40,7 +40,7 @@ const ALSO: &[Alias] = &[
 ];
 
 const KNOWN: &[Known] = &[Known {
-    what: Quantity::Albedo(1.0),
+    what: KnownValue::Albedo(1.0),
     params: &[("alpha", "0.25")],
     value: 0.999_991_012_221_851_34,
     relative: 1e-12,

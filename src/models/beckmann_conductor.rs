@@ -3,7 +3,7 @@
 //! Recipe: `model = "beckmann-conductor"`, `params = { eta = 0.2, k = 3.9 }` (one wavelength; a colour is three bakes).
 
 use super::microfacet::{self, ALPHA, ALPHA_X, ALPHA_Y, Beckmann, ETA_CONDUCTOR, K, MASKING, OUTSIDE};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Alias, Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 
 /// Registry entry.
@@ -32,7 +32,7 @@ fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
 const ALSO: &[Alias] = &[];
 
 const KNOWN: &[Known] = &[Known {
-    what: Quantity::Albedo(1.0),
+    what: KnownValue::Albedo(1.0),
     params: &[("alpha", "0"), ("eta", "0.5"), ("k", "2")],
     value: 4.25 / 6.25,
     relative: 1e-14,

@@ -4,7 +4,7 @@
 
 use super::glass::{self, ACROSS, Glass};
 use super::microfacet::{self, ALPHA, ALPHA_X, ALPHA_Y, Beckmann, ETA_DIELECTRIC};
-use super::{Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 
 /// Registry entry.
@@ -22,14 +22,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[],
     known: &[
         Known {
-            what: Quantity::Albedo(0.3),
+            what: KnownValue::Albedo(0.3),
             params: &[("alpha", "0"), ("eta", "1.5")],
             value: 0.207_756_343_070_897_7,
             relative: 1e-12,
             source: "closed form: the smooth interface",
         },
         Known {
-            what: Quantity::Value([0.0, 0.0, 0.0, 0.0]),
+            what: KnownValue::Value([0.0, 0.0, 0.0, 0.0]),
             params: &[("alpha", "0.5"), ("eta", "1.5")],
             value: 0.04 / std::f64::consts::PI,
             relative: 1e-13,

@@ -8,7 +8,7 @@
 use super::lambert::Lambert;
 use super::lobes::{Blinn, Diffuse, Over, Part, Sum};
 use super::phong::{KD, KS, N, at_most_one};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Alias, Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 use std::f64::consts::PI;
 
@@ -27,14 +27,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "blinn_phong_normalised_exact", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("kd", "0"), ("ks", "1"), ("n", "8")],
             value: 0.264_784_005_342_587_4,
             relative: 1e-13,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("kd", "0.25"), ("ks", "0.5"), ("n", "100")],
             value: 0.75,
             relative: 1e-11,

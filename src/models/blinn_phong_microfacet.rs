@@ -5,7 +5,7 @@
 use super::facets::{Facets, HalfVectorLobe, vcavity_visibility};
 use super::grooves;
 use super::microfacet::{F0, F90, Fresnel};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Alias, Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params};
 use crate::cite;
 use crate::integrate::Chart;
 use crate::math::frame::HalfVector;
@@ -28,7 +28,7 @@ pub static INFO: ModelInfo = ModelInfo {
             "n",
             "exponent of the cosine; alpha^2 = 2 / (n + 2)",
             [0.0, 1e7],
-            Preset::Value(64.0),
+            DefaultValue::Value(64.0),
         )
         .swept("n", [1.0, 1000.0], 0.25),
         F0,
@@ -38,7 +38,7 @@ pub static INFO: ModelInfo = ModelInfo {
     notes: "n + 2 over 2 pi normalises D cos; as a BRDF it would be four times too bright. V-cavity masking has kinks.",
     also: &[Alias { name: "torrance_sparrow_blinn_vcavity", set: &[] }],
     known: &[Known {
-        what: Quantity::Value([0.5, 0.0, 0.5, 3.140_625]),
+        what: KnownValue::Value([0.5, 0.0, 0.5, 3.140_625]),
         params: &[("n", "1")],
         value: 0.154_990_618_003_411_46,
         relative: 1e-12,

@@ -6,7 +6,7 @@ use super::blinn_phong::normal_albedo;
 use super::lambert::Lambert;
 use super::lobes::{Blinn, Diffuse, Over, Part, Sum};
 use super::phong::{KD, KS, N};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Alias, Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 use std::f64::consts::PI;
 
@@ -22,14 +22,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "blinn_phong_n8", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("kd", "0"), ("ks", "1"), ("n", "8")],
             value: 0.284_642_805_743_281_45,
             relative: 1e-13,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("kd", "0"), ("ks", "1"), ("n", "2")],
             value: 25.0 / 24.0,
             relative: 1e-11,

@@ -7,7 +7,7 @@
 
 use super::fujii::R;
 use super::lobes::{Diffuse, Reflector};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Alias, Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params};
 use crate::cite;
 use crate::integrate::Chart;
 use crate::terms::schlick;
@@ -27,21 +27,21 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "disney_diffuse", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("rho", "1"), ("r", "0.25")],
             value: 0.317_317_835_353_728,
             relative: 1e-14,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(0.0),
+            what: KnownValue::Albedo(0.0),
             params: &[("rho", "1"), ("r", "1")],
             value: 785.0 / 504.0,
             relative: 1e-13,
             source: "closed form: E(0) = 41/84 + r + 5 r^2 / 72",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("rho", "1"), ("r", "0.25")],
             value: 83.25 / 84.0,
             relative: 1e-13,
@@ -54,7 +54,7 @@ pub static INFO: ModelInfo = ModelInfo {
 
 /// `rho`.
 pub(super) const RHO: Param =
-    Param::number("rho", "rho", "base reflectance", [0.0, 1.0], Preset::Value(1.0)).also(&["base"]);
+    Param::number("rho", "rho", "base reflectance", [0.0, 1.0], DefaultValue::Value(1.0)).also(&["base"]);
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     Ok(Box::new(Diffuse(Burley { rho: params.number("rho")?, r: params.number("r")? })))

@@ -4,7 +4,7 @@
 //! base that is scaled by 1 - E.
 
 use super::cloth::{Cloth, ClothLobe};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Alias, Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params};
 use crate::cite;
 use crate::integrate::{BATCH, Chart, Nodes};
 use crate::math::frame;
@@ -18,7 +18,7 @@ pub(super) const ROUGHNESS: Param = Param::number(
     "r",
     "r of the cloth; the exponent of the sine is 1 / r; r = sheen_roughness^2",
     [0.01, 1.0],
-    Preset::Value(0.5),
+    DefaultValue::Value(0.5),
 )
 .also(&["r", "alpha"]);
 
@@ -39,14 +39,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "charlie_conty_kulla", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("roughness", "0.5")],
             value: 0.029_823_788_451_805_99,
             relative: 1e-12,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(0.877_582_561_890_372_7),
+            what: KnownValue::Albedo(0.877_582_561_890_372_7),
             params: &[("roughness", "0.5")],
             value: 0.125_181_317_248_388_62,
             relative: 1e-9,

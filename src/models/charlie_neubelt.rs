@@ -4,7 +4,7 @@
 
 use super::charlie::ROUGHNESS;
 use super::cloth::{Cloth, ClothLobe};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Alias, Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 use crate::math::frame;
 use crate::terms::{charlie, velvet};
@@ -25,14 +25,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "charlie_neubelt_visibility", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("roughness", "0.5")],
             value: 0.029_431_241_071_641_42,
             relative: 1e-12,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("roughness", "0.25")],
             value: 0.031_25,
             relative: 1e-10,

@@ -7,7 +7,7 @@ use super::albedo_curve::{AlbedoCurve, TOLERANCE};
 use super::integral::directional_albedo;
 use super::lobes::{Diffuse, Part, Reflector, Sum};
 use super::microfacet::MASKING;
-use super::{Brdf, Functional, Param, ParamError, Params, Preset, Sample, microfacet};
+use super::{Brdf, DefaultValue, Functional, Param, ParamError, Params, Sample, microfacet};
 use crate::integrate::{BATCH, Chart, Estimate, Nodes};
 use crate::terms::multiple_scattering as ms;
 use crate::terms::schlick;
@@ -34,7 +34,7 @@ const GAMMA: Param = Param::number(
     "gamma",
     "exponent of the tail, for base = student-t only",
     [1.501, 1e8],
-    Preset::Value(4.0),
+    DefaultValue::Value(4.0),
 );
 const COLOUR: Param = Param::choice(
     "colour",

@@ -5,7 +5,7 @@
 
 use super::grooves::{self, Grooves};
 use super::microfacet::{ALPHA, Beckmann, F0, F90, Fresnel};
-use super::{Alias, Brdf, Functional, Known, Laws, ModelInfo, ParamError, Params, Quantity, Sample};
+use super::{Alias, Brdf, Functional, Known, KnownValue, Laws, ModelInfo, ParamError, Params, Sample};
 use crate::cite;
 use crate::integrate::{Chart, Estimate};
 use crate::math::frame;
@@ -25,14 +25,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "cook_torrance_1982_seed_form", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.5, 0.0, 0.5, 3.140_625]),
+            what: KnownValue::Value([0.5, 0.0, 0.5, 3.140_625]),
             params: &[("alpha", "0.25")],
             value: 6.612_926_797_839_421_7,
             relative: 1e-12,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("alpha", "0.25")],
             value: 4.0 * 0.999_377_144_063_740_57,
             relative: 1e-11,

@@ -4,7 +4,7 @@
 
 use super::facets::{Facets, HalfVectorLobe};
 use super::microfacet::Fresnel;
-use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Alias, Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params};
 use crate::cite;
 use crate::integrate::Chart;
 use crate::math::frame::HalfVector;
@@ -18,13 +18,13 @@ pub static INFO: ModelInfo = ModelInfo {
     formula: "f = (clearcoat / 4) D_GTR1(wh; alpha) F(wo.wh; 0.04) g(mu_o) g(mu_i), alpha = 0.1 + gloss (0.001 - 0.1), g = 1 / (mu + sqrt(a^2 + mu^2 - a^2 mu^2)), a = 1/4",
     sources: &[(cite::BURLEY_2012, "section 5.4 and App. B; g as in the published code")],
     params: &[
-        Param::number("clearcoat", "cc", "strength of the coat", [0.0, 1.0], Preset::Value(1.0)),
+        Param::number("clearcoat", "cc", "strength of the coat", [0.0, 1.0], DefaultValue::Value(1.0)),
         Param::number(
             "gloss",
             "gloss",
             "0 is alpha = 0.1, 1 is alpha = 0.001",
             [0.0, 1.0],
-            Preset::Value(1.0),
+            DefaultValue::Value(1.0),
         )
         .swept("gloss", [0.0, 1.0], 1.0),
     ],
@@ -33,7 +33,7 @@ pub static INFO: ModelInfo = ModelInfo {
         a quarter of the coat's Fresnel factor nearly everywhere. The layers of that model are added, which does not conserve.",
     also: &[Alias { name: "disney_clearcoat", set: &[] }],
     known: &[Known {
-        what: Quantity::Value([0.5, 0.0, 0.5, 3.140_625]),
+        what: KnownValue::Value([0.5, 0.0, 0.5, 3.140_625]),
         params: &[("clearcoat", "1"), ("gloss", "0")],
         value: 0.022_022_405_316_302_946,
         relative: 1e-11,

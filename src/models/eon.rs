@@ -11,7 +11,7 @@
 use super::fujii::{Fon, R};
 use super::lobes::{Diffuse, Reflector};
 use super::oren_nayar::RHO;
-use super::{Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 use crate::integrate::Chart;
 use glam::DVec3;
@@ -32,21 +32,21 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("rho", "1"), ("r", "0.25")],
             value: 0.305_656_376_591_189_95,
             relative: 1e-13,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(0.3),
+            what: KnownValue::Albedo(0.3),
             params: &[("rho", "1"), ("r", "0.7")],
             value: 1.0,
             relative: 1e-13,
             source: "white furnace: E = 1 at rho = 1",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("rho", "0.5"), ("r", "0.25")],
             value: 0.482_788_055_341_047_44,
             relative: 1e-12,

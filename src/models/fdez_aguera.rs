@@ -4,7 +4,7 @@
 //! diffuse lobe is an irradiance map; the function `fdez-aguera-weights` gives the weights.
 
 use super::compensated::{self, Parts, Rule};
-use super::{Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 
 /// Registry entry.
@@ -19,14 +19,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[],
     known: &[
         Known {
-            what: Quantity::Albedo(0.3),
+            what: KnownValue::Albedo(0.3),
             params: &[("alpha", "0.7")],
             value: 1.0,
             relative: 1e-6,
             source: "white furnace",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("alpha", "1"), ("f0", "0.5"), ("f90", "0.5")],
             // k / (1 - F (1 - E)) with k = E / 2, F = 1/2
             value: 0.306_852_819_440_054_7 / 1.306_852_819_440_054_7,

@@ -7,7 +7,7 @@
 use super::burley_diffuse::{RHO, two_factors};
 use super::fujii::R;
 use super::lobes::{Diffuse, Reflector};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Alias, Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 use crate::integrate::Chart;
 use crate::terms::schlick;
@@ -32,21 +32,21 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "frostbite_diffuse", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("rho", "1"), ("r", "0.25")],
             value: 0.288_280_912_287_451_6,
             relative: 1e-14,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(0.0),
+            what: KnownValue::Albedo(0.0),
             params: &[("rho", "1"), ("r", "1")],
             value: (10.0 / 7.0 + 65.0 / 504.0) / 1.51,
             relative: 1e-13,
             source: "closed form: E(0) = (1 - r + r / 1.51)(10 r / 7 + 65 r^2 / 504)",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("rho", "1"), ("r", "0.25")],
             value: 0.891_038_907_284_768_2,
             relative: 1e-13,

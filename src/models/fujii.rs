@@ -7,7 +7,7 @@
 
 use super::lobes::{Diffuse, Reflector};
 use super::oren_nayar::RHO;
-use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Alias, Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params};
 use crate::cite;
 use crate::integrate::Chart;
 use glam::DVec3;
@@ -30,21 +30,21 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "fon_fujii", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("rho", "1"), ("r", "0.25")],
             value: 0.287_236_902_325_790_96,
             relative: 1e-14,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(0.0),
+            what: KnownValue::Albedo(0.0),
             params: &[("rho", "0.5"), ("r", "0.7")],
             value: 0.5,
             relative: 1e-13,
             source: "closed form: E(0) = rho for every r",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("rho", "1"), ("r", "0.25")],
             value: 0.932_880_765_991_993_9,
             relative: 1e-13,
@@ -57,7 +57,7 @@ pub static INFO: ModelInfo = ModelInfo {
 
 /// `r`, the artist's roughness of diffuse models.
 pub(super) const R: Param =
-    Param::number("r", "r", "artist's roughness; 0 is Lambert", [0.0, 1.0], Preset::Value(0.5))
+    Param::number("r", "r", "artist's roughness; 0 is Lambert", [0.0, 1.0], DefaultValue::Value(0.5))
         .also(&["roughness"])
         .swept("r", [0.0, 1.0], 1.0);
 

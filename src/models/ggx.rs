@@ -4,7 +4,7 @@
 //! Typical widths: 0.001 looks like a mirror, 0.1 like satin, 0.7 like chalky metal.
 
 use super::microfacet::{self, ALPHA, ALPHA_X, ALPHA_Y, F0, F90, Fresnel, Ggx, MASKING};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Alias, Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 
 /// Registry entry.
@@ -41,21 +41,21 @@ const ALSO: &[Alias] = &[
 
 const KNOWN: &[Known] = &[
     Known {
-        what: Quantity::Albedo(1.0),
+        what: KnownValue::Albedo(1.0),
         params: &[("alpha", "1")],
         value: 0.306_852_819_440_054_7,
         relative: 1e-12,
         source: "closed form: alpha = 1 is the Lommel-Seeliger law, E(1) = 1 - ln 2",
     },
     Known {
-        what: Quantity::Albedo(0.5),
+        what: KnownValue::Albedo(0.5),
         params: &[("alpha", "1"), ("masking", "\"separable\"")],
         value: 0.409_137_092_586_739_6,
         relative: 1e-12,
         source: "closed form: separable Smith at alpha = 1, E(mu) = 2 (1 - ln 2) / (1 + mu)",
     },
     Known {
-        what: Quantity::Albedo(0.05),
+        what: KnownValue::Albedo(0.05),
         params: &[("alpha", "0.01")],
         value: 0.976_207_590_052,
         relative: 1e-11,

@@ -3,7 +3,7 @@
 //! Recipe: `model = "ggx-conductor"`, `params = { eta = 0.2, k = 3.9 }` (one wavelength; a colour is three bakes).
 
 use super::microfacet::{self, ALPHA, ALPHA_X, ALPHA_Y, ETA_CONDUCTOR, Ggx, K, MASKING, OUTSIDE};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Alias, Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 
 /// Registry entry.
@@ -33,14 +33,14 @@ const ALSO: &[Alias] = &[Alias { name: "ggx_conductor_correlated", set: &[("mask
 
 const KNOWN: &[Known] = &[
     Known {
-        what: Quantity::Albedo(1.0),
+        what: KnownValue::Albedo(1.0),
         params: &[("alpha", "0.25"), ("eta", "0.1875"), ("k", "3.375")],
         value: 0.862_052_878_489_248_64,
         relative: 1e-11,
         source: "slope-space quadrature in 80-bit arithmetic",
     },
     Known {
-        what: Quantity::Value([0.5, 0.0, 0.5, 3.140_625]),
+        what: KnownValue::Value([0.5, 0.0, 0.5, 3.140_625]),
         params: &[("alpha", "0.25"), ("eta", "0.1875"), ("k", "3.375")],
         value: 1.541_516_846_610_180_6,
         relative: 1e-12,

@@ -4,7 +4,7 @@
 //! internal reflection. Typical eta: water 1.333, plastic and glass 1.5, diamond 2.42.
 
 use super::microfacet::{self, ALPHA, ALPHA_X, ALPHA_Y, ETA_DIELECTRIC, Fresnel, Ggx, MASKING};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Alias, Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 
 /// Registry entry.
@@ -32,7 +32,7 @@ fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
 const ALSO: &[Alias] = &[];
 
 const KNOWN: &[Known] = &[Known {
-    what: Quantity::Albedo(1.0),
+    what: KnownValue::Albedo(1.0),
     params: &[("alpha", "0.25"), ("eta", "1.5")],
     value: 0.037_048_663_177_816_786,
     relative: 1e-11,

@@ -5,7 +5,7 @@
 
 use super::glass::{self, ACROSS, Glass};
 use super::microfacet::{self, ALPHA, ALPHA_X, ALPHA_Y, ETA_DIELECTRIC, Ggx};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Alias, Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 
 /// Registry entry.
@@ -29,14 +29,14 @@ pub static INFO: ModelInfo = ModelInfo {
     ],
     known: &[
         Known {
-            what: Quantity::Value([0.5, 0.0, 0.75, 3.140_625]),
+            what: KnownValue::Value([0.5, 0.0, 0.75, 3.140_625]),
             params: &[("alpha", "0.25"), ("eta", "1.5")],
             value: 0.055_584_974_219_629_05,
             relative: 1e-12,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Value([1.25, 0.0, 2.5, 3.25]),
+            what: KnownValue::Value([1.25, 0.0, 2.5, 3.25]),
             params: &[
                 ("alpha_x", "0.375"),
                 ("alpha_y", "0.75"),
@@ -48,14 +48,14 @@ pub static INFO: ModelInfo = ModelInfo {
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("alpha", "0.25"), ("eta", "1.5")],
             value: 0.037_048_663_177_816_79,
             relative: 1e-10,
             source: "slope-space quadrature in 80-bit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(0.968_912_421_710_644_8),
+            what: KnownValue::Albedo(0.968_912_421_710_644_8),
             params: &[("alpha", "0.25"), ("eta", "0.6875")],
             value: 0.053_233_101_238_064_1,
             relative: 1e-3,

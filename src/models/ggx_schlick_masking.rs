@@ -4,7 +4,7 @@
 //! physically based engines shipped.
 
 use super::microfacet::{ALPHA, F0, F90, Fresnel, Ggx};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Quantity, Sample};
+use super::{Alias, Brdf, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params, Sample};
 use crate::cite;
 use crate::integrate::{BATCH, Chart, Nodes};
 use crate::math::frame;
@@ -38,14 +38,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "ggx_schlickG_karis_ibl", set: &[("k", "ibl")] }],
     known: &[
         Known {
-            what: Quantity::Value([0.5, 0.0, 0.5, 3.140_625]),
+            what: KnownValue::Value([0.5, 0.0, 0.5, 3.140_625]),
             params: &[("alpha", "0.25")],
             value: 1.597_049_604_258_478_5,
             relative: 1e-12,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("alpha", "1")],
             value: 0.306_852_819_440_054_7,
             relative: 1e-10,

@@ -6,7 +6,9 @@
 use super::albedo_curve::AlbedoCurve;
 use super::lobes::{Part, Sum, cosine_pdf, cosine_sample};
 use super::microfacet::{Ggx, MASKING, Masking, masking};
-use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity, Sample, charlie};
+use super::{
+    Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params, Sample, charlie,
+};
 use crate::cite;
 use crate::integrate::{Chart, ellipse::FacetLobe};
 use crate::math::frame;
@@ -27,36 +29,36 @@ pub static INFO: ModelInfo = ModelInfo {
         (cite::KHR_CLEARCOAT, "the layering by F_c"),
     ],
     params: &[
-        Param::number("base_color", "rho", "base colour, one channel", [0.0, 1.0], Preset::Value(0.8)),
+        Param::number("base_color", "rho", "base colour, one channel", [0.0, 1.0], DefaultValue::Value(0.8)),
         Param::number(
             "metallic",
             "m",
             "0 is a dielectric of index 1.5, 1 a metal",
             [0.0, 1.0],
-            Preset::Value(0.0),
+            DefaultValue::Value(0.0),
         ),
         Param::number(
             "roughness",
             "r",
             "roughness of the base; alpha = r^2",
             [0.01, 1.0],
-            Preset::Value(0.5),
+            DefaultValue::Value(0.5),
         ),
-        Param::number("sheen", "s", "sheen colour, one channel", [0.0, 1.0], Preset::Value(0.0)),
+        Param::number("sheen", "s", "sheen colour, one channel", [0.0, 1.0], DefaultValue::Value(0.0)),
         Param::number(
             "sheen_roughness",
             "r_s",
             "roughness of the sheen; Charlie's is its square",
             [0.1, 1.0],
-            Preset::Value(0.5),
+            DefaultValue::Value(0.5),
         ),
-        Param::number("clearcoat", "c", "weight of the coat", [0.0, 1.0], Preset::Value(0.0)),
+        Param::number("clearcoat", "c", "weight of the coat", [0.0, 1.0], DefaultValue::Value(0.0)),
         Param::number(
             "clearcoat_roughness",
             "r_c",
             "roughness of the coat; alpha = r^2",
             [0.01, 1.0],
-            Preset::Value(0.1),
+            DefaultValue::Value(0.1),
         ),
         MASKING,
     ],
@@ -67,7 +69,7 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[],
     known: &[
         Known {
-            what: Quantity::Albedo(0.5),
+            what: KnownValue::Albedo(0.5),
             params: &[
                 ("base_color", "1"),
                 ("metallic", "1"),
@@ -79,21 +81,21 @@ pub static INFO: ModelInfo = ModelInfo {
             source: "closed form: a white metal is separable GGX at alpha = 1, E(mu) = 2 (1 - ln 2) / (1 + mu)",
         },
         Known {
-            what: Quantity::Albedo(0.5),
+            what: KnownValue::Albedo(0.5),
             params: &[("base_color", "1"), ("metallic", "1"), ("roughness", "1")],
             value: 0.450_693_855_665_945_1,
             relative: 1e-7,
             source: "closed form: a white metal is correlated GGX at alpha = 1, E(mu) = 1 - mu ln((1 + mu) / mu)",
         },
         Known {
-            what: Quantity::Albedo(0.1),
+            what: KnownValue::Albedo(0.1),
             params: &[("base_color", "1"), ("metallic", "1"), ("roughness", "1")],
             value: 0.760_210_472_720_163,
             relative: 1e-7,
             source: "closed form: E(mu) = 1 - mu ln((1 + mu) / mu)",
         },
         Known {
-            what: Quantity::Albedo(0.3),
+            what: KnownValue::Albedo(0.3),
             params: &[
                 ("base_color", "0.8"),
                 ("roughness", "0.5"),
@@ -105,7 +107,7 @@ pub static INFO: ModelInfo = ModelInfo {
             source: "nested double exponential and Gauss-Legendre sums, E of the sheen summed anew at every node",
         },
         Known {
-            what: Quantity::Value([0.0, 0.0, 0.0, 0.0]),
+            what: KnownValue::Value([0.0, 0.0, 0.0, 0.0]),
             params: &[("base_color", "0.5"), ("metallic", "0.25"), ("roughness", "1")],
             // w = 0: 0.75 (0.96 * 0.5 / pi + 0.04 / (4 pi)) + 0.25 * 0.5 / (4 pi)
             value: (0.75 * (0.48 + 0.01) + 0.25 * 0.125) * FRAC_1_PI,
@@ -113,7 +115,7 @@ pub static INFO: ModelInfo = ModelInfo {
             source: "closed form: normal incidence, D V = 1 / (4 pi)",
         },
         Known {
-            what: Quantity::Value([0.0, 0.0, 0.0, 0.0]),
+            what: KnownValue::Value([0.0, 0.0, 0.0, 0.0]),
             params: &[
                 ("base_color", "0.5"),
                 ("roughness", "1"),

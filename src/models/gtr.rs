@@ -5,7 +5,7 @@
 use super::facets::{Facets, HalfVectorLobe};
 use super::microfacet::{self, ALPHA, F0, F90, Fresnel, MASKING, Masking};
 use super::normals::turned_away;
-use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params};
 use crate::cite;
 use crate::integrate::Chart;
 use crate::integrate::graded::{Graded, Order};
@@ -25,7 +25,13 @@ pub static INFO: ModelInfo = ModelInfo {
     ],
     params: &[
         ALPHA,
-        Param::number("gamma", "gamma", "exponent of the tail; 2 is GGX", [0.0, 10.0], Preset::Value(1.0)),
+        Param::number(
+            "gamma",
+            "gamma",
+            "exponent of the tail; 2 is GGX",
+            [0.0, 10.0],
+            DefaultValue::Value(1.0),
+        ),
         F0,
         F90,
         MASKING,
@@ -37,14 +43,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[],
     known: &[
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("alpha", "1"), ("gamma", "1")],
             value: 0.306_852_819_440_054_7,
             relative: 1e-10,
             source: "closed form: at alpha = 1 every gamma is the uniform hemisphere of GGX, E(1) = 1 - ln 2",
         },
         Known {
-            what: Quantity::Value([0.5, 0.0, 0.5, 3.140_625]),
+            what: KnownValue::Value([0.5, 0.0, 0.5, 3.140_625]),
             params: &[("alpha", "0.25"), ("gamma", "2")],
             value: 1.638_023_489_826_618_8,
             relative: 1e-12,

@@ -4,7 +4,7 @@
 
 use super::facets::{Facets, HalfVectorLobe};
 use super::microfacet::{ALPHA, Beckmann, F0, F90, Fresnel};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Alias, Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 use crate::integrate::{Chart, Edge, FacetLobe};
 use crate::math::frame::HalfVector;
@@ -24,14 +24,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "kelemen_specular_normalised", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.5, 0.0, 0.5, 3.140_625]),
+            what: KnownValue::Value([0.5, 0.0, 0.5, 3.140_625]),
             params: &[("alpha", "0.25")],
             value: 1.653_231_583_960_422_4,
             relative: 1e-12,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("alpha", "0.25")],
             value: 0.937_500_007_033_448_4,
             relative: 1e-10,

@@ -6,7 +6,7 @@
 use super::albedo_curve::{AlbedoCurve, TOLERANCE};
 use super::lobes::{Diffuse, Part, Reflector, Sum};
 use super::microfacet::{F90, Fresnel};
-use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity, kelemen};
+use super::{Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params, kelemen};
 use crate::cite;
 use crate::integrate::Chart;
 use crate::terms::multiple_scattering;
@@ -20,12 +20,12 @@ pub static INFO: ModelInfo = ModelInfo {
     formula: "f = f_s + rho (1 - E(mu_o))(1 - E(mu_i)) / (pi (1 - E_avg)), f_s the lobe of `kelemen` with its Fresnel factor, E its albedo",
     sources: &[(cite::KELEMEN_2001, "section 3 (the matte part), section 2 (f_s)")],
     params: &[
-        Param::number("alpha", "alpha", "width of the specular lobe", [1e-3, 2.0], Preset::Value(0.25))
+        Param::number("alpha", "alpha", "width of the specular lobe", [1e-3, 2.0], DefaultValue::Value(0.25))
             .also(&["m"]),
-        Param::number("f0", "F0", "reflectance at normal incidence", [0.0, 0.99], Preset::Value(0.04))
+        Param::number("f0", "F0", "reflectance at normal incidence", [0.0, 0.99], DefaultValue::Value(0.04))
             .also(&["F0"]),
         F90,
-        Param::number("rho", "rho", "reflectance of the matte base", [0.0, 1.0], Preset::Value(0.5))
+        Param::number("rho", "rho", "reflectance of the matte base", [0.0, 1.0], DefaultValue::Value(0.5))
             .also(&["kd", "k_d"]),
     ],
     laws: Laws { reciprocal: true, passive: true, isotropic: true },
@@ -34,14 +34,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[],
     known: &[
         Known {
-            what: Quantity::Albedo(0.4),
+            what: KnownValue::Albedo(0.4),
             params: &[("alpha", "0.3"), ("rho", "1")],
             value: 1.0,
             relative: 1e-6,
             source: "white furnace: E + (1 - E)",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("alpha", "0.25"), ("f0", "0.5"), ("f90", "0.5"), ("rho", "0.5")],
             value: 0.5 + 0.25 * 0.937_500_007_033_448_4,
             relative: 1e-6,

@@ -4,7 +4,8 @@
 //! `kelemen-beckmann`.
 
 use super::{
-    BATCH, Brdf, Known, Laws, ModelInfo, Nodes, Param, ParamError, Params, Preset, Quantity, Sample, kelemen,
+    BATCH, Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Nodes, Param, ParamError, Params, Sample,
+    kelemen,
 };
 use crate::cite;
 use crate::integrate::Chart;
@@ -21,15 +22,15 @@ pub static INFO: ModelInfo = ModelInfo {
     formula: "f = rho_s PH(wh) F(wo.wh) / (pi |wo + wi|^2), PH = exp(-tan^2 / m^2) / (m^2 cos^4) = pi D",
     sources: &[(cite::DEON_LUEBKE_2007, "section 14.3, KS_Skin_Specular"), (cite::KELEMEN_2001, "section 2")],
     params: &[
-        Param::number("m", "m", "roughness, Beckmann's alpha", [1e-4, 2.0], Preset::Value(0.3))
+        Param::number("m", "m", "roughness, Beckmann's alpha", [1e-4, 2.0], DefaultValue::Value(0.3))
             .also(&["alpha"]),
-        Param::number("rho_s", "rho_s", "strength", [0.0, 1.0], Preset::Value(0.18)),
+        Param::number("rho_s", "rho_s", "strength", [0.0, 1.0], DefaultValue::Value(0.18)),
         Param::number(
             "f0",
             "F0",
             "reflectance at normal incidence",
             [0.0, 1.0],
-            Preset::Value(skin_specular::F0),
+            DefaultValue::Value(skin_specular::F0),
         )
         .also(&["F0"]),
         Param::choice(
@@ -43,7 +44,7 @@ pub static INFO: ModelInfo = ModelInfo {
         punctual E is pi times too large by intent, and stays below 1 only for a small rho_s.",
     also: &[],
     known: &[Known {
-        what: Quantity::Value([0.5, 0.0, 0.5, 3.140_625]),
+        what: KnownValue::Value([0.5, 0.0, 0.5, 3.140_625]),
         params: &[("m", "0.3125"), ("rho_s", "0.1875"), ("units", "\"punctual\"")],
         value: 0.015_329_404_718_887_1 / 0.877_582_561_890_372_6,
         relative: 1e-12,

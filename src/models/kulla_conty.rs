@@ -3,7 +3,7 @@
 //! Recipe: `model = "kulla-conty"`, `params = { base = "ggx", alpha = 0.5, f0 = 0.9 }`.
 
 use super::compensated::{self, Parts, Rule};
-use super::{Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 use crate::terms::multiple_scattering as ms;
 
@@ -24,14 +24,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[],
     known: &[
         Known {
-            what: Quantity::Albedo(0.3),
+            what: KnownValue::Albedo(0.3),
             params: &[("alpha", "0.7")],
             value: 1.0,
             relative: 1e-6,
             source: "white furnace",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("alpha", "1"), ("f0", "0.5"), ("f90", "0.5"), ("masking", "\"separable\"")],
             // E = 1 - ln 2, E_avg = 4 (1 - ln 2)^2 = e; F_ms = e / (4 (1 - (1 - e) / 2)) = e / (2 (1 + e))
             value: 0.153_426_409_720_027_36

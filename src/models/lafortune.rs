@@ -12,7 +12,7 @@ use super::lambert::Lambert;
 use super::lobes::{Cosine, Diffuse, Over, Part, Sum};
 use super::param::Column;
 use super::ward::RHO_D;
-use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Quantity};
+use super::{Brdf, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params};
 use crate::cite;
 use crate::math::figures::exact;
 use std::f64::consts::TAU;
@@ -32,7 +32,7 @@ pub static INFO: ModelInfo = ModelInfo {
         The clamp at 0 is part of the model.",
     also: &[],
     known: &[Known {
-        what: Quantity::Albedo(1.0),
+        what: KnownValue::Albedo(1.0),
         params: &[("rho_d", "0.25"), ("lobes", "[[-1, -1, 0.5, 2, 1], [0.5, 0.5, 1, 6, 0.125]]")],
         value: 0.25 + TAU / 16.0 + TAU / 64.0,
         relative: 1e-12,

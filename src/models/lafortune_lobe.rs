@@ -8,7 +8,7 @@ use super::lafortune::part;
 use super::lambert::Lambert;
 use super::lobes::{Diffuse, Part, Sum};
 use super::ward::RHO_D;
-use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Alias, Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params};
 use crate::cite;
 use std::f64::consts::PI;
 
@@ -23,11 +23,15 @@ pub static INFO: ModelInfo = ModelInfo {
     ],
     params: &[
         RHO_D,
-        Param::number("rho_s", "rho_s", "factor of the lobe", [0.0, 1e7], Preset::Value(1.0)),
+        Param::number("rho_s", "rho_s", "factor of the lobe", [0.0, 1e7], DefaultValue::Value(1.0)),
         coefficient("cx", -1.0).also(&["Cx"]),
         coefficient("cy", -1.0).also(&["Cy"]),
         coefficient("cz", 1.0).also(&["Cz"]),
-        Param::number("n", "n", "exponent", [0.0, 1e7], Preset::Value(20.0)).swept("n", [1.0, 1000.0], 0.25),
+        Param::number("n", "n", "exponent", [0.0, 1e7], DefaultValue::Value(20.0)).swept(
+            "n",
+            [1.0, 1000.0],
+            0.25,
+        ),
     ],
     laws: Laws { reciprocal: true, passive: false, isotropic: false },
     notes: "Passive only if the parameters make it so: the lobe has E <= rho_s |C wo|^n 2 pi / (n + 2), with equality where C wo is along the normal. \
@@ -35,14 +39,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "lafortune_lobe", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([1.5, 0.25, 1.468_75, 3.375]),
+            what: KnownValue::Value([1.5, 0.25, 1.468_75, 3.375]),
             params: &[("rho_d", "0"), ("cx", "-0.5"), ("cy", "-0.75"), ("cz", "0.875"), ("n", "12")],
             value: 0.000_361_165_674_183_068_3,
             relative: 1e-12,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("rho_d", "0.25"), ("cz", "0.5"), ("n", "2")],
             value: 0.25 + PI / 8.0,
             relative: 1e-12,
@@ -54,7 +58,7 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 const fn coefficient(id: &'static str, default: f64) -> Param {
-    Param::number(id, id, "element of the diagonal matrix C", [-2.0, 2.0], Preset::Value(default))
+    Param::number(id, id, "element of the diagonal matrix C", [-2.0, 2.0], DefaultValue::Value(default))
 }
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {

@@ -3,7 +3,7 @@
 //! Recipe: `model = "lambert"`, `params = { rho = 0.8 }`.
 
 use super::lobes::{Diffuse, Reflector};
-use super::{Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params};
 use crate::cite;
 use crate::integrate::Chart;
 use glam::DVec3;
@@ -15,31 +15,28 @@ pub static INFO: ModelInfo = ModelInfo {
     title: "Lambert",
     formula: "f = rho / pi",
     sources: &[(cite::LAMBERT_1760, "Pars prima, cap. II")],
-    params: &[Param::number("rho", "rho", "diffuse reflectance", [0.0, 1.0], Preset::Value(1.0)).swept(
-        "rho",
-        [0.0, 1.0],
-        1.0,
-    )],
+    params: &[Param::number("rho", "rho", "diffuse reflectance", [0.0, 1.0], DefaultValue::Value(1.0))
+        .swept("rho", [0.0, 1.0], 1.0)],
     laws: Laws { reciprocal: true, passive: true, isotropic: true },
     notes: "E = E_avg = rho for every angle.",
     also: &[],
     known: &[
         Known {
-            what: Quantity::Albedo(0.3),
+            what: KnownValue::Albedo(0.3),
             params: &[("rho", "0.5")],
             value: 0.5,
             relative: 1e-14,
             source: "closed form: E = rho",
         },
         Known {
-            what: Quantity::Albedo(0.0),
+            what: KnownValue::Albedo(0.0),
             params: &[("rho", "0.5")],
             value: 0.5,
             relative: 1e-14,
             source: "closed form: E = rho, also for grazing views",
         },
         Known {
-            what: Quantity::Value([0.5, 0.0, 0.5, 3.140_625]),
+            what: KnownValue::Value([0.5, 0.0, 0.5, 3.140_625]),
             params: &[("rho", "0.5")],
             value: 0.159_154_943_091_895_34,
             relative: 1e-15,

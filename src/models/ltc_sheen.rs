@@ -4,7 +4,7 @@
 //! one minus that.
 
 use super::cloth::{Cloth, ClothLobe};
-use super::{Brdf, Functional, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Brdf, DefaultValue, Functional, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params};
 use crate::cite;
 use crate::integrate::Estimate;
 use crate::math::frame;
@@ -20,23 +20,29 @@ pub static INFO: ModelInfo = ModelInfo {
         (cite::ZELTNER_2022, "section 3; rational fits of MaterialX mx_zeltner_sheen"),
         (cite::HEITZ_2016, "Eq. 1"),
     ],
-    params: &[Param::number("roughness", "r", "roughness of the fibres", [0.01, 1.0], Preset::Value(0.5))
-        .also(&["r"])
-        .swept("roughness", [0.03, 1.0], 1.0)],
+    params: &[Param::number(
+        "roughness",
+        "r",
+        "roughness of the fibres",
+        [0.01, 1.0],
+        DefaultValue::Value(0.5),
+    )
+    .also(&["r"])
+    .swept("roughness", [0.03, 1.0], 1.0)],
     laws: Laws { reciprocal: false, passive: true, isotropic: true },
     notes: "Not reciprocal (asymmetry up to 27 %). The fit of R dips to -2e-5 near roughness 0.1 and is clamped to 0 here; \
         the function `ltc-sheen-fit` does not clamp. E = R exactly.",
     also: &[],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("roughness", "0.5")],
             value: 0.010_918_162_934_908_076,
             relative: 1e-12,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("roughness", "1")],
             value: 0.344_619_027_497_392_2,
             relative: 1e-9,

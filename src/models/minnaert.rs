@@ -5,7 +5,9 @@
 //!
 //! Recipe: `model = "minnaert"`, `params = { rho = 0.5, k = 1.5 }`.
 
-use super::{Brdf, Functional, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity, Sample};
+use super::{
+    Brdf, DefaultValue, Functional, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params, Sample,
+};
 use crate::cite;
 use crate::integrate::{Chart, Estimate};
 use crate::math::{frame, special};
@@ -22,8 +24,8 @@ pub static INFO: ModelInfo = ModelInfo {
         (cite::BRDF_EXPLORER, "`minnaert.brdf`: the same power, with the factor (k + 1) / 2"),
     ],
     params: &[
-        Param::number("rho", "rho", "reflectance at k = 1", [0.0, 1.0], Preset::Value(1.0)),
-        Param::number("k", "k", "limb darkening exponent", [0.0, 10.0], Preset::Value(1.5)).swept(
+        Param::number("rho", "rho", "reflectance at k = 1", [0.0, 1.0], DefaultValue::Value(1.0)),
+        Param::number("k", "k", "limb darkening exponent", [0.0, 10.0], DefaultValue::Value(1.5)).swept(
             "k",
             [1.0, 4.0],
             1.0,
@@ -34,21 +36,21 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("rho", "0.5"), ("k", "0.5")],
             value: 0.219_967_976_279_128_35,
             relative: 1e-14,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(0.5),
+            what: KnownValue::Albedo(0.5),
             params: &[("rho", "1"), ("k", "2")],
             value: 1.0 / 3.0,
             relative: 1e-13,
             source: "closed form: E = 2 rho mu^(k-1) / (k + 1)",
         },
         Known {
-            what: Quantity::Albedo(0.25),
+            what: KnownValue::Albedo(0.25),
             params: &[("rho", "1"), ("k", "0.5")],
             value: 8.0 / 3.0,
             relative: 1e-12,

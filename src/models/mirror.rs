@@ -3,7 +3,7 @@
 //! Recipe: `model = "mirror"`, `params = { f0 = 0.04 }`. `eval` has no value to give; albedos and split sums are exact.
 
 use super::microfacet::{F0, F90, Fresnel};
-use super::{Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity, Sample};
+use super::{Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params, Sample};
 use crate::cite;
 use crate::integrate::Chart;
 use glam::{DVec2, DVec3};
@@ -23,14 +23,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[],
     known: &[
         Known {
-            what: Quantity::Albedo(0.5),
+            what: KnownValue::Albedo(0.5),
             params: &[("f0", "0.04")],
             value: 0.04 + 0.96 / 32.0,
             relative: 1e-15,
             source: "closed form: F(mu)",
         },
         Known {
-            what: Quantity::Albedo(0.0),
+            what: KnownValue::Albedo(0.0),
             params: &[("f0", "0.04")],
             value: 1.0,
             relative: 1e-15,

@@ -87,7 +87,7 @@ pub use crate::integrate::{BATCH, Chart, Crease, Edge, Estimate, FacetLobe, Node
 pub use functional::Functional;
 use glam::{DVec2, DVec3};
 pub use integral::Rules;
-pub use param::{Column, Kind, Param, ParamError, Params, Preset, Sweep, Value};
+pub use param::{Column, DefaultValue, Kind, Param, ParamError, Params, Sweep, Value};
 use std::fmt::Debug;
 
 /// Every model, in the order of `list models`.
@@ -260,7 +260,7 @@ pub struct Laws {
 #[derive(Debug, Clone, Copy)]
 pub struct Known {
     /// What is known.
-    pub what: Quantity,
+    pub what: KnownValue,
     /// Parameters, as `key=value`.
     pub params: &'static [(&'static str, &'static str)],
     /// The value.
@@ -273,7 +273,7 @@ pub struct Known {
 
 /// What a [`Known`] value is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Quantity {
+pub enum KnownValue {
     /// f at angles `theta_i, phi_i, theta_o, phi_o` in radians.
     Value([f64; 4]),
     /// E at a view cosine.
@@ -352,8 +352,7 @@ impl ModelInfo {
 
     /// Parameters whose default is the value of another one.
     pub fn followers<'a>(&self, leader: &'a str) -> impl Iterator<Item = &'static str> + use<'a> {
-        let follows =
-            move |p: &&Param| matches!(p.kind, Kind::Number { preset: Preset::Of(id), .. } if id == leader);
+        let follows = move |p: &&Param| matches!(p.kind, Kind::Number { preset: DefaultValue::Of(id), .. } if id == leader);
         self.params.iter().filter(follows).map(|p| p.id)
     }
 

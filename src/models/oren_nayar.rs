@@ -8,7 +8,7 @@
 //! Recipe: `model = "oren-nayar"`, `params = { rho = 0.8, sigma = 0.35 }`.
 
 use super::lobes::{Diffuse, Reflector};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Alias, Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params};
 use crate::cite;
 use crate::integrate::Chart;
 use glam::DVec3;
@@ -31,21 +31,21 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "oren_nayar_qualitative", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("rho", "1"), ("sigma", "0.25")],
             value: 0.292_966_742_379_348_7,
             relative: 1e-14,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("rho", "1"), ("sigma", "0.25")],
             value: 0.920_382_165_605_095_5,
             relative: 1e-13,
             source: "closed form: E(1) = A",
         },
         Known {
-            what: Quantity::Albedo(0.0),
+            what: KnownValue::Albedo(0.0),
             params: &[("rho", "1"), ("sigma", "0.198")],
             value: 1.015_178_506_944_261_1,
             relative: 1e-12,
@@ -58,7 +58,7 @@ pub static INFO: ModelInfo = ModelInfo {
 
 /// `rho`.
 pub(super) const RHO: Param =
-    Param::number("rho", "rho", "reflectance of the facets", [0.0, 1.0], Preset::Value(1.0));
+    Param::number("rho", "rho", "reflectance of the facets", [0.0, 1.0], DefaultValue::Value(1.0));
 /// `sigma`.
 pub(super) const SIGMA: Param = Param {
     unit: "rad",
@@ -67,7 +67,7 @@ pub(super) const SIGMA: Param = Param {
         "sigma",
         "standard deviation of the slope angle of the facets",
         [0.0, 1.57],
-        Preset::Value(0.35),
+        DefaultValue::Value(0.35),
     )
     .swept("sigma", [0.0, 1.57], 1.0)
 };

@@ -7,7 +7,7 @@
 
 use super::lobes::{Diffuse, Reflector};
 use super::oren_nayar::{RHO, SIGMA};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Alias, Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 use crate::integrate::{Chart, Estimate, line};
 use crate::math::frame;
@@ -34,14 +34,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "oren_nayar_full", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("rho", "1"), ("sigma", "0.25")],
             value: 0.302_974_780_364_264_56,
             relative: 1e-13,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("rho", "1"), ("sigma", "0.25")],
             value: 0.975_576_970_799_900_7,
             relative: 1e-12,

@@ -50,7 +50,7 @@ pub enum Kind {
         /// Largest value.
         max: f64,
         /// Value if none is given.
-        preset: Preset,
+        preset: DefaultValue,
     },
     /// One of a few words; the first is the default.
     Choice(&'static [&'static str]),
@@ -76,7 +76,7 @@ pub struct Column {
 
 /// The default of a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Preset {
+pub enum DefaultValue {
     /// A fixed value.
     Value(f64),
     /// The value of another parameter, declared before this one.
@@ -91,7 +91,7 @@ impl Param {
         symbol: &'static str,
         doc: &'static str,
         range: [f64; 2],
-        preset: Preset,
+        preset: DefaultValue,
     ) -> Param {
         Param {
             id,

@@ -7,7 +7,7 @@
 
 use super::lambert::Lambert;
 use super::lobes::{Cosine, Diffuse, Over, Part, Sum};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Alias, Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params};
 use crate::cite;
 use crate::math::figures::exact;
 use std::f64::consts::{FRAC_1_PI, TAU};
@@ -29,28 +29,28 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "phong_lafortune_willems", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("kd", "0"), ("ks", "1"), ("n", "8")],
             value: 0.053_448_284_883_453_77,
             relative: 1e-13,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("kd", "0.25"), ("ks", "0.5"), ("n", "1000")],
             value: 0.75,
             relative: 1e-12,
             source: "closed form: E(1) = kd + ks",
         },
         Known {
-            what: Quantity::Albedo(0.0),
+            what: KnownValue::Albedo(0.0),
             params: &[("kd", "0"), ("ks", "1"), ("n", "4")],
             value: 0.1875,
             relative: 1e-11,
             source: "closed form: E(0) = 3/pi B(5/2, 3/2) = 3/16",
         },
         Known {
-            what: Quantity::Albedo(0.0),
+            what: KnownValue::Albedo(0.0),
             params: &[("kd", "0"), ("ks", "1"), ("n", "1")],
             value: FRAC_1_PI,
             relative: 1e-11,
@@ -62,14 +62,21 @@ pub static INFO: ModelInfo = ModelInfo {
 };
 
 /// `kd`.
-pub(super) const KD: Param = Param::number("kd", "kd", "diffuse reflectance", [0.0, 1.0], Preset::Value(0.5));
+pub(super) const KD: Param =
+    Param::number("kd", "kd", "diffuse reflectance", [0.0, 1.0], DefaultValue::Value(0.5));
 /// `ks`.
-pub(super) const KS: Param =
-    Param::number("ks", "ks", "specular reflectance at normal incidence", [0.0, 1.0], Preset::Value(0.5));
+pub(super) const KS: Param = Param::number(
+    "ks",
+    "ks",
+    "specular reflectance at normal incidence",
+    [0.0, 1.0],
+    DefaultValue::Value(0.5),
+);
 /// `n`.
-pub(super) const N: Param = Param::number("n", "n", "exponent of the lobe", [0.0, 1e7], Preset::Value(50.0))
-    .spelled(&["alpha"])
-    .swept("n", [1.0, 1000.0], 0.25);
+pub(super) const N: Param =
+    Param::number("n", "n", "exponent of the lobe", [0.0, 1e7], DefaultValue::Value(50.0))
+        .spelled(&["alpha"])
+        .swept("n", [1.0, 1000.0], 0.25);
 
 /// Two reflectances of which a model keeps its promise of E <= 1 only up to a sum of 1.
 ///

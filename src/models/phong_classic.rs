@@ -8,7 +8,7 @@
 use super::lambert::Lambert;
 use super::lobes::{Cosine, Diffuse, Over, Part, Sum};
 use super::phong::{KD, KS, N};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Alias, Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 use std::f64::consts::{PI, TAU};
 
@@ -28,14 +28,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "phong_classic", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("kd", "0.125"), ("ks", "0.5"), ("n", "8")],
             value: 0.142_330_022_339_932_2,
             relative: 1e-13,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("kd", "0.25"), ("ks", "0.5"), ("n", "9")],
             value: 0.35 * PI,
             relative: 1e-12,

@@ -8,7 +8,7 @@
 
 use super::lobes::{Cosine, Diffuse, Over, Part, Reflector, Sum};
 use super::phong::{KD, KS, N};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Alias, Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 use crate::integrate::Chart;
 use glam::DVec3;
@@ -26,14 +26,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "phong_seed_shading", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("kd", "0.5"), ("ks", "0.5"), ("n", "8")],
             value: 0.501_247_484_769_005_7,
             relative: 1e-13,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(0.3),
+            what: KnownValue::Albedo(0.3),
             params: &[("kd", "0.5"), ("ks", "0")],
             value: PI / 3.0,
             relative: 1e-12,

@@ -3,7 +3,7 @@
 //! Recipe: `model = "sggx-fiber"`, `params = { sigma = 0.3 }`. Unit depth, unit albedo.
 
 use super::cloth::{Cloth, ClothLobe};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Alias, Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params};
 use crate::cite;
 use crate::integrate::{Chart, FacetLobe};
 use crate::terms::sggx;
@@ -23,14 +23,14 @@ pub static INFO: ModelInfo = ModelInfo {
         "sigma",
         "thickness of the fibres along the normal; the roughness of the sheen is its square root",
         [1e-3, 1.0],
-        Preset::Value(0.5),
+        DefaultValue::Value(0.5),
     )
     .swept("sigma", [0.01, 1.0], 0.5)],
     laws: Laws { reciprocal: true, passive: true, isotropic: true },
     notes: "The layer scatters once; what `ltc-sheen` fits has all orders.",
     also: &[Alias { name: "sggx_fiber_single_scatter", set: &[] }],
     known: &[Known {
-        what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+        what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
         params: &[("sigma", "0.5")],
         value: 0.010_314_584_571_759_117,
         relative: 1e-12,

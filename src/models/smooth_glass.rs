@@ -4,7 +4,7 @@
 //! reflection. `eval` has no value to give; `albedo` prints R and T, which are exact.
 
 use super::microfacet::ETA_DIELECTRIC;
-use super::{Alias, Brdf, Btdf, Known, Laws, ModelInfo, ParamError, Params, Quantity, Sample};
+use super::{Alias, Brdf, Btdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params, Sample};
 use crate::cite;
 use crate::integrate::{Chart, Estimate, View};
 use crate::terms::fresnel;
@@ -26,14 +26,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "perfect-refraction", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("eta", "1.5")],
             value: 0.04,
             relative: 1e-15,
             source: "closed form: ((eta - 1) / (eta + 1))^2",
         },
         Known {
-            what: Quantity::Albedo(0.5),
+            what: KnownValue::Albedo(0.5),
             params: &[("eta", "0.5")],
             value: 1.0,
             relative: 1e-15,

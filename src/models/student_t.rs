@@ -4,7 +4,7 @@
 //! tails are longer than GGX's.
 
 use super::microfacet::{self, ALPHA, ALPHA_X, ALPHA_Y, F0, F90, Fresnel, MASKING, StudentT};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Alias, Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params};
 use crate::cite;
 
 /// Registry entry.
@@ -28,7 +28,7 @@ pub static INFO: ModelInfo = ModelInfo {
             "gamma",
             "exponent of the tail: 2 is GGX, large is Beckmann; above 3/2, where the masking is finite",
             [1.501, 1e8],
-            Preset::Value(4.0),
+            DefaultValue::Value(4.0),
         ),
         F0,
         F90,
@@ -40,14 +40,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "std_smith_correlated", set: &[("masking", "correlated")] }],
     known: &[
         Known {
-            what: Quantity::Value([0.0, 0.0, 0.75, 0.0]),
+            what: KnownValue::Value([0.0, 0.0, 0.75, 0.0]),
             params: &[("alpha", "1"), ("gamma", "10")],
             value: 0.119_280_672_136_647_57,
             relative: 1e-12,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("alpha", "1"), ("gamma", "2")],
             value: 0.306_852_819_440_054_7,
             relative: 1e-10,

@@ -6,7 +6,7 @@
 use super::facets::{Facets, HalfVectorLobe, vcavity_visibility};
 use super::grooves;
 use super::microfacet::{ALPHA, Beckmann, F0, F90, Fresnel};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Alias, Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 use crate::integrate::Chart;
 use crate::math::frame::HalfVector;
@@ -30,14 +30,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "torrance_sparrow_beckmann_vcavity", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.5, 0.0, 0.5, 3.140_625]),
+            what: KnownValue::Value([0.5, 0.0, 0.5, 3.140_625]),
             params: &[("alpha", "0.25")],
             value: 1.653_231_699_459_855_4,
             relative: 1e-12,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("alpha", "0.25")],
             value: 0.999_377_144_063_740_6,
             relative: 1e-11,

@@ -3,7 +3,7 @@
 //! Recipe: `model = "turquin"`, `params = { base = "ggx", alpha = 0.5, f0 = 0.9 }`. What game engines do: one multiplication.
 
 use super::compensated::{self, Parts, Rule};
-use super::{Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 
 /// Registry entry.
@@ -21,14 +21,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[],
     known: &[
         Known {
-            what: Quantity::Albedo(0.3),
+            what: KnownValue::Albedo(0.3),
             params: &[("alpha", "0.7")],
             value: 1.0,
             relative: 1e-6,
             source: "white furnace",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("alpha", "1"), ("f0", "0.5"), ("f90", "0.5")],
             // (E / 2) (1 + (1 - E) / (2 E)) = (1 + E) / 4
             value: 0.25 * 1.306_852_819_440_054_7,

@@ -6,7 +6,9 @@ use super::cloth::{Cloth, ClothLobe};
 use super::facets::vcavity_visibility;
 use super::grooves::Grooves;
 use super::microfacet::Fresnel;
-use super::{Alias, Brdf, Functional, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{
+    Alias, Brdf, DefaultValue, Functional, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params,
+};
 use crate::cite;
 use crate::integrate::{Chart, Estimate};
 use crate::math::frame;
@@ -28,14 +30,14 @@ pub static INFO: ModelInfo = ModelInfo {
         "sigma",
         "width of the fibres about the horizon",
         [1e-3, 2.0],
-        Preset::Value(0.5),
+        DefaultValue::Value(0.5),
     )
     .swept("sigma", [0.1, 1.0], 1.0)],
     laws: Laws { reciprocal: true, passive: true, isotropic: true },
     notes: "0 to all orders where the half vector is the normal. V-cavity masking has kinks; E is integrated between them.",
     also: &[Alias { name: "velvet00_vcavity", set: &[] }],
     known: &[Known {
-        what: Quantity::Value([1.25, 0.5, 1.0, 1.75]),
+        what: KnownValue::Value([1.25, 0.5, 1.0, 1.75]),
         params: &[("sigma", "0.5")],
         value: 0.321_330_560_219_072_4,
         relative: 1e-12,

@@ -4,7 +4,7 @@
 
 use super::cloth::{Cloth, ClothLobe};
 use super::microfacet::{F0, F90, Fresnel};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Alias, Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params};
 use crate::cite;
 use crate::integrate::{Chart, FacetLobe};
 use crate::math::frame;
@@ -26,7 +26,7 @@ pub static INFO: ModelInfo = ModelInfo {
             "alpha",
             "width of the fibres about the horizon",
             [1e-3, 1.0],
-            Preset::Value(0.5),
+            DefaultValue::Value(0.5),
         ),
         F0,
         F90,
@@ -36,14 +36,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "velvet07_neubelt", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("alpha", "0.5")],
             value: 0.040_365_674_232_774_51,
             relative: 1e-12,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("alpha", "0.5")],
             value: 0.125_931_926_135_869_34,
             relative: 1e-10,

@@ -9,7 +9,7 @@
 use super::lambert::Lambert;
 use super::lobes::{Diffuse, Norm, Part, Sum, Ward};
 use super::microfacet::{ALPHA, ALPHA_X, ALPHA_Y};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, Param, ParamError, Params, Preset, Quantity};
+use super::{Alias, Brdf, DefaultValue, Known, KnownValue, Laws, ModelInfo, Param, ParamError, Params};
 use crate::cite;
 
 /// Registry entry.
@@ -30,14 +30,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "ward_1992_exact_exponent", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("rho_d", "0.25"), ("rho_s", "0.5"), ("alpha_x", "0.5"), ("alpha_y", "0.125")],
             value: 0.081_788_994_206_152_99,
             relative: 1e-13,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("rho_d", "0"), ("rho_s", "1"), ("alpha", "0.5")],
             value: 0.585_490_376_444_347_2,
             relative: 1e-11,
@@ -53,10 +53,10 @@ pub(super) const PARAMS: [Param; 5] = [RHO_D, RHO_S, ALPHA, ALPHA_X, ALPHA_Y];
 
 /// `rho_d`.
 pub(super) const RHO_D: Param =
-    Param::number("rho_d", "rho_d", "diffuse reflectance", [0.0, 1.0], Preset::Value(0.5));
+    Param::number("rho_d", "rho_d", "diffuse reflectance", [0.0, 1.0], DefaultValue::Value(0.5));
 /// `rho_s`.
 pub(super) const RHO_S: Param =
-    Param::number("rho_s", "rho_s", "specular reflectance", [0.0, 1.0], Preset::Value(0.5));
+    Param::number("rho_s", "rho_s", "specular reflectance", [0.0, 1.0], DefaultValue::Value(0.5));
 
 fn build(params: &Params) -> Result<Box<dyn Brdf>, ParamError> {
     assemble(params.numbers(["rho_d", "rho_s"])?, params, Norm::Ward)

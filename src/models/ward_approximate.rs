@@ -8,7 +8,7 @@
 
 use super::lobes::Norm;
 use super::ward::{PARAMS, assemble};
-use super::{Alias, Brdf, Known, Laws, ModelInfo, ParamError, Params, Quantity};
+use super::{Alias, Brdf, Known, KnownValue, Laws, ModelInfo, ParamError, Params};
 use crate::cite;
 
 /// Registry entry.
@@ -25,14 +25,14 @@ pub static INFO: ModelInfo = ModelInfo {
     also: &[Alias { name: "ward_seed_approx_exponent", set: &[] }],
     known: &[
         Known {
-            what: Quantity::Value([0.25, 0.5, 1.0, 2.75]),
+            what: KnownValue::Value([0.25, 0.5, 1.0, 2.75]),
             params: &[("rho_d", "0.25"), ("rho_s", "0.5"), ("alpha_x", "0.5"), ("alpha_y", "0.125")],
             value: 0.084_726_311_446_284_69,
             relative: 1e-13,
             source: "formula in 50-digit arithmetic",
         },
         Known {
-            what: Quantity::Albedo(1.0),
+            what: KnownValue::Albedo(1.0),
             params: &[("rho_d", "0"), ("rho_s", "1"), ("alpha", "0.5")],
             value: 0.655_588_967_972_667_5,
             relative: 1e-11,

@@ -60,7 +60,7 @@ pub(super) fn resolve(
     if sizing.warps {
         sets = search.best_warps()?;
     }
-    let mut best: Option<Found> = None;
+    let mut best: Option<FoundSize> = None;
     for set in sets {
         let limit = best.as_ref().map_or(usize::MAX, |b| b.grid.len());
         if let Some(found) = search.smallest(&set, limit)? {
@@ -87,7 +87,7 @@ pub(super) fn resolve(
     search.bind(found.grid).map(|bound| planned.sized(bound, record))
 }
 
-struct Found {
+struct FoundSize {
     grid: Grid,
     error: f64,
 }
@@ -268,7 +268,7 @@ impl<'a> Search<'a> {
     }
 
     /// The smallest grid of a set of axes that holds, with fewer than `limit` texels.
-    fn smallest(&self, set: &[Axis], limit: usize) -> Result<Option<Found>, PipelineError> {
+    fn smallest(&self, set: &[Axis], limit: usize) -> Result<Option<FoundSize>, PipelineError> {
         // for each axis the lengths with the error that they leave alone, from the first that may do
         let mut choices: Vec<Vec<(usize, f64)>> = Vec::new();
         for (i, axis) in set.iter().enumerate() {
@@ -308,7 +308,7 @@ impl<'a> Search<'a> {
                 error = self.trial(grid.clone(), false)?;
             }
             if error <= self.sizing.error {
-                return Ok(Some(Found { grid, error }));
+                return Ok(Some(FoundSize { grid, error }));
             }
         }
         Ok(None)

@@ -59,7 +59,7 @@ pub struct Size {
 
 /// The table that was found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Found {
+pub struct SuggestedSize {
     /// What it takes and how it reads.
     pub size: Size,
     /// The recipe that bakes it.
@@ -78,7 +78,7 @@ pub struct Suggestion {
     /// The engine's own, baked by this program.
     pub own: Option<Size>,
     /// The table in its place.
-    pub found: Option<Found>,
+    pub found: Option<SuggestedSize>,
     /// Why there is none; or what to know of it.
     pub notes: Vec<String>,
 }
@@ -187,8 +187,8 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// The smallest of all candidates; `least` becomes the least error of those that fail.
-    fn best(&self, output: &Output, least: &mut Reached) -> Result<Option<Found>, PipelineError> {
-        let mut best: Option<Found> = None;
+    fn best(&self, output: &Output, least: &mut Reached) -> Result<Option<SuggestedSize>, PipelineError> {
+        let mut best: Option<SuggestedSize> = None;
         for (channels, decode) in candidates(self.planned, output) {
             let found = match self.sized(channels, output) {
                 Ok(request) => self.bake(&request, decode)?,
@@ -228,7 +228,7 @@ impl Search<'_> {
     }
 
     /// Bakes the text of a recipe; none if it reads worse than asked for after all.
-    fn bake(&self, request: &TableRequest, decode: Decode) -> Result<Option<Found>, PipelineError> {
+    fn bake(&self, request: &TableRequest, decode: Decode) -> Result<Option<SuggestedSize>, PipelineError> {
         let text = recipe::text("suggested", std::slice::from_ref(request));
         let plan = recipe::parse(&text, "suggested.toml").map_err(|e| self.fault(&e))?;
         let planned = plan.tables.first().ok_or_else(|| self.fault(&"no table"))?;
@@ -242,7 +242,7 @@ impl Search<'_> {
         let channels: Vec<&str> = spec.layout.ids().collect();
         let lines = reader::lines(planned.name(), &spec.grid, &channels, decode, self.language)
             .map_err(|e| self.fault(&e))?;
-        Ok(Some(Found { size, recipe: text, language: self.language, lines }))
+        Ok(Some(SuggestedSize { size, recipe: text, language: self.language, lines }))
     }
 
     fn fault(&self, error: &dyn std::fmt::Display) -> PipelineError {

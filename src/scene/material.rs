@@ -290,10 +290,15 @@ fn read_factors(
 }
 
 /// An image, and how it is read.
-type Found = (Option<usize>, Option<Reading>);
+type FoundTexture = (Option<usize>, Option<Reading>);
 
 /// The image of a `textureInfo`, if that is there. Its index is checked.
-fn texture(node: &Node<'_>, key: &str, prefix: &str, owner: Owner<'_>) -> Result<Option<Found>, Fault> {
+fn texture(
+    node: &Node<'_>,
+    key: &str,
+    prefix: &str,
+    owner: Owner<'_>,
+) -> Result<Option<FoundTexture>, Fault> {
     let Some(info) = node.get(key)? else { return Ok(None) };
     let textures = owner.tables.textures;
     let index = info.need("index", "the index of a texture")?.index("textures", textures.len())?;

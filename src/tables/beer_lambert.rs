@@ -8,11 +8,11 @@ use super::{
 use crate::cite;
 use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
-use crate::models::{Param, Preset};
+use crate::models::{DefaultValue, Param};
 use crate::terms::medium;
 
 const fn sigma(id: &'static str, doc: &'static str, preset: f64) -> Param {
-    Param { unit: "1/length", ..Param::number(id, "sigma_t", doc, [0.0, 1e9], Preset::Value(preset)) }
+    Param { unit: "1/length", ..Param::number(id, "sigma_t", doc, [0.0, 1e9], DefaultValue::Value(preset)) }
 }
 
 const fn passed(id: &'static str, meaning: &'static str, band: Band) -> ChannelInfo {

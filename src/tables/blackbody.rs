@@ -9,7 +9,7 @@ use super::{
 use crate::cite;
 use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
-use crate::models::{Param, Preset};
+use crate::models::{DefaultValue, Param};
 use crate::terms::blackbody::planck;
 
 const fn colour(id: &'static str, meaning: &'static str, glow: Glow, band: Band) -> ChannelInfo {
@@ -72,7 +72,7 @@ pub static INFO: TableInfo = TableInfo {
                 "T_0",
                 "of layout light: temperature of luminance 1",
                 [500.0, 1e6],
-                Preset::Value(2000.0),
+                DefaultValue::Value(2000.0),
             )
         },
         Param::choice(

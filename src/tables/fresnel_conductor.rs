@@ -11,7 +11,7 @@ use super::{
 use crate::cite;
 use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
-use crate::models::{Param, Params, Preset};
+use crate::models::{DefaultValue, Param, Params};
 use crate::terms::fresnel::{self, Polarised};
 use crate::terms::{metals, schlick};
 
@@ -100,9 +100,15 @@ pub static INFO: TableInfo = TableInfo {
             "measured metal; or `index`: n and k as given; or `rows`: those of `nk`",
             &["au", "ag", "al", "cu", "fe", "ni", "ti", "w", "index", "rows"],
         ),
-        Param::number("n", "n", "of metal index: real part", [0.0, 1e3], Preset::Value(0.2)).coloured(),
-        Param::number("k", "k", "of metal index: extinction coefficient", [0.0, 1e3], Preset::Value(3.4))
-            .coloured(),
+        Param::number("n", "n", "of metal index: real part", [0.0, 1e3], DefaultValue::Value(0.2)).coloured(),
+        Param::number(
+            "k",
+            "k",
+            "of metal index: extinction coefficient",
+            [0.0, 1e3],
+            DefaultValue::Value(3.4),
+        )
+        .coloured(),
         ETA,
         NK,
     ],

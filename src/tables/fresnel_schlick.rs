@@ -7,7 +7,7 @@ use super::{
 use crate::cite;
 use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
-use crate::models::{Param, Params, Preset};
+use crate::models::{DefaultValue, Param, Params};
 use crate::terms::{fresnel, lazanyi, schlick};
 
 /// Registry entry.
@@ -54,15 +54,21 @@ pub static INFO: TableInfo = TableInfo {
             "which form",
             &["schlick", "generalised", "f82-tint", "lazanyi", "dielectric"],
         ),
-        Param::number("f0", "F0", "reflectance at normal incidence", [0.0, 1.0], Preset::Value(0.04)),
-        Param::number("f90", "F90", "reflectance at grazing", [0.0, 1.0], Preset::Value(1.0)),
-        Param::number("exponent", "p", "of generalised: the exponent", [0.01, 100.0], Preset::Value(5.0)),
-        Param::number("tint", "t", "of f82-tint: factor at cosine 1/7", [0.0, 1.0], Preset::Value(1.0)),
-        Param::number("n", "n", "of lazanyi: real part of the index", [0.0, 1e3], Preset::Value(1.3)),
-        Param::number("k", "k", "of lazanyi: extinction coefficient", [0.0, 1e3], Preset::Value(7.6)),
-        Param::number("a", "a", "of lazanyi: depth of the dip", [0.0, 10.0], Preset::Value(1.5)),
-        Param::number("q", "q", "of lazanyi: exponent of the dip", [0.01, 100.0], Preset::Value(6.0)),
-        Param::number("eta", "eta", "of dielectric: relative index", [1e-3, 1e3], Preset::Value(1.5)),
+        Param::number("f0", "F0", "reflectance at normal incidence", [0.0, 1.0], DefaultValue::Value(0.04)),
+        Param::number("f90", "F90", "reflectance at grazing", [0.0, 1.0], DefaultValue::Value(1.0)),
+        Param::number(
+            "exponent",
+            "p",
+            "of generalised: the exponent",
+            [0.01, 100.0],
+            DefaultValue::Value(5.0),
+        ),
+        Param::number("tint", "t", "of f82-tint: factor at cosine 1/7", [0.0, 1.0], DefaultValue::Value(1.0)),
+        Param::number("n", "n", "of lazanyi: real part of the index", [0.0, 1e3], DefaultValue::Value(1.3)),
+        Param::number("k", "k", "of lazanyi: extinction coefficient", [0.0, 1e3], DefaultValue::Value(7.6)),
+        Param::number("a", "a", "of lazanyi: depth of the dip", [0.0, 10.0], DefaultValue::Value(1.5)),
+        Param::number("q", "q", "of lazanyi: exponent of the dip", [0.01, 100.0], DefaultValue::Value(6.0)),
+        Param::number("eta", "eta", "of dielectric: relative index", [1e-3, 1e3], DefaultValue::Value(1.5)),
     ],
     laws: &["range", "honest"],
     axes: default_axes,

@@ -85,7 +85,7 @@ fn default_axes(_: &Setting<'_>) -> Vec<Axis> {
 
 /// A fit: variances, rising, with the weights of the channels, and the relative residual of each channel.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fit {
+pub struct GaussianFit {
     /// Variance in mm² and weights.
     pub lobes: Vec<(f64, Rgb)>,
     /// `sqrt(int (p - q)^2 dr / int p^2 dr)`.
@@ -96,7 +96,7 @@ struct Table {
     axis: Axis,
     profile: Profile,
     /// Made when it is first asked for: a recipe that is only checked needs no fit.
-    fit: OnceLock<Fit>,
+    fit: OnceLock<GaussianFit>,
 }
 
 fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
@@ -109,7 +109,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
 }
 
 impl Table {
-    fn fit(&self) -> &Fit {
+    fn fit(&self) -> &GaussianFit {
         self.fit.get_or_init(|| fit(&self.profile, self.axis.len))
     }
 }
@@ -152,7 +152,7 @@ struct Problem {
 
 /// Fits `count` Gaussians to a profile.
 #[must_use]
-pub fn fit(profile: &Profile, count: usize) -> Fit {
+pub fn fit(profile: &Profile, count: usize) -> GaussianFit {
     let problem = Problem::new(profile);
     let mut squares = |logs: &[f64]| problem.solve(logs).1.iter().map(|r| r * r).sum();
     // there are several minima: begin with narrow Gaussians, with narrower ones, and take the best
@@ -170,7 +170,7 @@ pub fn fit(profile: &Profile, count: usize) -> Fit {
     let (weights, residual) = problem.solve(&logs);
     let lobes =
         logs.iter().enumerate().map(|(i, v)| (libm::exp(*v), [0, 1, 2].map(|c| weights[c][i]))).collect();
-    Fit { lobes, residual }
+    GaussianFit { lobes, residual }
 }
 
 /// Logarithms of variances, evenly spread between those whose Gaussians are at their height at two radii.

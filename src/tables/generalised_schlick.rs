@@ -14,7 +14,7 @@ use super::{
 use crate::cite;
 use crate::grid::{Axis, Warp};
 use crate::integrate::{BATCH, Estimate, MAX_CHANNELS, Nodes, Sums, View, adaptive, ladder};
-use crate::models::{Brdf, Param, Preset};
+use crate::models::{Brdf, DefaultValue, Param};
 
 const fn channel(id: &'static str, meaning: &'static str, role: Role) -> ChannelInfo {
     ChannelInfo { id, meaning, range: [0.0, 1.0], role }
@@ -57,8 +57,14 @@ pub static INFO: TableInfo = TableInfo {
             "the power of 1 - v, or a dielectric's Fresnel factor",
             &["power", "dielectric"],
         ),
-        Param::number("exponent", "e", "exponent, for curve = power", [0.0, 5e4], Preset::Value(5.0)),
-        Param::number("eta", "eta", "relative index, for curve = dielectric", [1.0, 1e3], Preset::Value(1.5)),
+        Param::number("exponent", "e", "exponent, for curve = power", [0.0, 5e4], DefaultValue::Value(5.0)),
+        Param::number(
+            "eta",
+            "eta",
+            "relative index, for curve = dielectric",
+            [1.0, 1e3],
+            DefaultValue::Value(1.5),
+        ),
     ],
     laws: &["finite", "range", "reciprocity", "honest"],
     axes: default_axes,

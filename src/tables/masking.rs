@@ -8,7 +8,7 @@ use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::Estimate;
 use crate::models::normals::{self, NORMALS, between};
-use crate::models::{Param, ParamError, Preset};
+use crate::models::{DefaultValue, Param, ParamError};
 use crate::terms::schlick_masking::{self, K};
 use crate::terms::{charlie, vcavity};
 use std::f64::consts::PI;
@@ -83,7 +83,7 @@ pub static INFO: TableInfo = TableInfo {
             "mu_m",
             "of vcavity: cosine of the facet's normal",
             [0.0, 1.0],
-            Preset::Value(0.5),
+            DefaultValue::Value(0.5),
         ),
         Param {
             unit: "rad",
@@ -92,7 +92,7 @@ pub static INFO: TableInfo = TableInfo {
                 "phi",
                 "of vcavity: azimuth of the facet from the direction",
                 [0.0, 2.0 * PI],
-                Preset::Value(0.0),
+                DefaultValue::Value(0.0),
             )
         },
     ],

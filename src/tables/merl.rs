@@ -15,7 +15,7 @@ use super::{
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
-use crate::models::{Param, Preset};
+use crate::models::{DefaultValue, Param};
 use glam::DVec3;
 
 /// Texels along theta_h and theta_d.
@@ -49,9 +49,9 @@ pub static INFO: TableInfo = TableInfo {
     mix: Mix::Layouts,
     model: ModelUse::Any("ggx"),
     params: &[
-        Param::number("red", "c_r", "factor of the red channel", [0.0, 1.0], Preset::Value(1.0)),
-        Param::number("green", "c_g", "factor of the green channel", [0.0, 1.0], Preset::Value(1.0)),
-        Param::number("blue", "c_b", "factor of the blue channel", [0.0, 1.0], Preset::Value(1.0)),
+        Param::number("red", "c_r", "factor of the red channel", [0.0, 1.0], DefaultValue::Value(1.0)),
+        Param::number("green", "c_g", "factor of the green channel", [0.0, 1.0], DefaultValue::Value(1.0)),
+        Param::number("blue", "c_b", "factor of the blue channel", [0.0, 1.0], DefaultValue::Value(1.0)),
     ],
     laws: &["finite", "range", "reciprocity", "honest"],
     axes: |_| default_axes(),

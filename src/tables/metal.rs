@@ -1,6 +1,6 @@
 //! Which metal a table is of: measured, rows of a file, or an index that is given, for all wavelengths or for red, green and blue.
 
-use crate::models::{Column, Param, ParamError, Params, Preset};
+use crate::models::{Column, DefaultValue, Param, ParamError, Params};
 use crate::terms::metals;
 
 /// What a row of `nk` holds. A recipe may name a file in the place of rows of these columns.
@@ -24,7 +24,7 @@ pub(super) const ETA: Param = Param::number(
     "eta",
     "index of what lies above, 1 for vacuum, 1.5 for a coat of varnish: all other indices are divided by it",
     [0.1, 10.0],
-    Preset::Value(1.0),
+    DefaultValue::Value(1.0),
 );
 
 /// Where the index of a metal is from.

@@ -2,7 +2,7 @@
 
 use super::{BindError, Source, Spec};
 use crate::models::normals::{self, NORMALS, Normals, Shape};
-use crate::models::{Param, ParamError, Params, Preset};
+use crate::models::{DefaultValue, Param, ParamError, Params};
 
 /// The numbers of the distributions.
 pub(super) const ALPHA: Param = Param::number(
@@ -10,7 +10,7 @@ pub(super) const ALPHA: Param = Param::number(
     "alpha",
     "width; of charlie the r of its paper, of velvet-2000 and sggx their sigma",
     [0.0, 2.0],
-    Preset::Value(0.25),
+    DefaultValue::Value(0.25),
 );
 /// Of GTR and Student's t.
 pub(super) const GAMMA: Param = Param::number(
@@ -18,11 +18,11 @@ pub(super) const GAMMA: Param = Param::number(
     "gamma",
     "of student-t (above 1.5) and gtr (up to 10): exponent of the tail; 2 is GGX",
     [0.0, 1e8],
-    Preset::Value(2.0),
+    DefaultValue::Value(2.0),
 );
 /// Of Blinn-Phong.
 pub(super) const EXPONENT: Param =
-    Param::number("n", "n", "of blinn-phong: exponent of the cosine", [0.0, 1e7], Preset::Value(64.0));
+    Param::number("n", "n", "of blinn-phong: exponent of the cosine", [0.0, 1e7], DefaultValue::Value(64.0));
 
 /// Ids of the numbers.
 const NUMBERS: [&str; 3] = [ALPHA.id, GAMMA.id, EXPONENT.id];

@@ -7,7 +7,7 @@ use super::{
 use crate::cite;
 use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
-use crate::models::{Param, ParamError, Params, Preset};
+use crate::models::{DefaultValue, Param, ParamError, Params};
 use crate::terms::phase;
 
 /// Parameters: which phase function, and its numbers.
@@ -22,12 +22,24 @@ pub(super) const PARAMS: &[Param] = &[
         "g",
         "of henyey-greenstein and draine: asymmetry",
         [-0.999, 0.999],
-        Preset::Value(0.75),
+        DefaultValue::Value(0.75),
     ),
-    Param::number("draine_alpha", "alpha", "of draine: weight of cos^2", [0.0, 100.0], Preset::Value(1.0)),
+    Param::number(
+        "draine_alpha",
+        "alpha",
+        "of draine: weight of cos^2",
+        [0.0, 100.0],
+        DefaultValue::Value(1.0),
+    ),
     Param {
         unit: "um",
-        ..Param::number("diameter", "d", "of fog: diameter of the droplets", [5.0, 50.0], Preset::Value(10.0))
+        ..Param::number(
+            "diameter",
+            "d",
+            "of fog: diameter of the droplets",
+            [5.0, 50.0],
+            DefaultValue::Value(10.0),
+        )
     },
 ];
 

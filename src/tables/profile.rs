@@ -6,8 +6,8 @@
 
 use super::{BindError, Source, Spec};
 use crate::cite;
-use crate::models::{Column, Param, ParamError, Params, Preset};
-use crate::terms::burley_diffusion::{self, Fit};
+use crate::models::{Column, DefaultValue, Param, ParamError, Params};
+use crate::terms::burley_diffusion::{self, ShapeFit};
 use crate::terms::dipole::{Dipole, internal_reflectance};
 use crate::terms::skin;
 use std::f64::consts::PI;
@@ -28,7 +28,7 @@ const fn measured(
     range: [f64; 2],
     preset: f64,
 ) -> Param {
-    Param { unit, ..Param::number(id, id, doc, range, Preset::Value(preset)) }
+    Param { unit, ..Param::number(id, id, doc, range, DefaultValue::Value(preset)) }
 }
 
 const ALBEDO: [f64; 2] = [1e-4, 1.0];
@@ -305,11 +305,11 @@ fn sources(dipole: &Dipole) -> (f64, [f64; 2]) {
     ((3.0 * dipole.sigma_a * sigma_t).sqrt(), [1.0 / sigma_t, image / sigma_t])
 }
 
-fn fit(p: &Params) -> Result<Fit, ParamError> {
+fn fit(p: &Params) -> Result<ShapeFit, ParamError> {
     Ok(match p.choice("fit")? {
-        "searchlight" => Fit::Searchlight,
-        "diffuse" => Fit::Diffuse,
-        _ => Fit::DiffuseMeanFreePath,
+        "searchlight" => ShapeFit::Searchlight,
+        "diffuse" => ShapeFit::Diffuse,
+        _ => ShapeFit::DiffuseMeanFreePath,
     })
 }
 

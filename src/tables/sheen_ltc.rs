@@ -15,7 +15,7 @@ use crate::grid::table::{Extreme, Table};
 use crate::grid::{Axis, Quantity, Texel};
 use crate::integrate::slab::{Medium, Slab};
 use crate::integrate::{Estimate, MAX_CHANNELS, Trust, gauss};
-use crate::models::{Param, ParamError, Preset};
+use crate::models::{DefaultValue, Param, ParamError};
 use crate::terms::sggx;
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -85,7 +85,13 @@ pub static INFO: TableInfo = TableInfo {
     ],
     mix: Mix::Layouts,
     model: ModelUse::None,
-    params: &[Param::number("r", "r", "roughness of the fibres, sigma = r^2", RANGE, Preset::Value(0.5))],
+    params: &[Param::number(
+        "r",
+        "r",
+        "roughness of the fibres, sigma = r^2",
+        RANGE,
+        DefaultValue::Value(0.5),
+    )],
     laws: &["finite", "range", "cross-check"],
     axes: default_axes,
     least_tolerance: |_| 2e-3,
@@ -188,7 +194,7 @@ fn bind(spec: &Spec) -> Result<Box<dyn Baker>, BindError> {
 
 /// What is known of a texel at one level.
 #[derive(Debug, Clone, Copy)]
-struct Found {
+struct FoundMatrix {
     lobe: Sheared,
     reflectance: f64,
 }
@@ -196,7 +202,7 @@ struct Found {
 impl Baker for Sheen {
     fn texel(&self, at: &[f64], tolerance: f64) -> Result<Estimate, TexelError> {
         let (mu, sigma) = (at[self.mu], self.sigma(at)?);
-        let mut found: Vec<Found> = Vec::new();
+        let mut found: Vec<FoundMatrix> = Vec::new();
         let mut e = Estimate { evaluations: 0, ..Estimate::exact([0.0; MAX_CHANNELS]) };
         for level in 0..LEVELS.len() {
             let next = self.level(sigma, mu, level, found.last())?;
@@ -204,7 +210,7 @@ impl Baker for Sheen {
             found.push(next);
             let [.., first, second, last] = found.as_slice() else { continue };
             for (i, part) in self.parts.iter().enumerate() {
-                let of = |f: &Found| channel(*part, f);
+                let of = |f: &FoundMatrix| channel(*part, f);
                 e.value[i] = of(last);
                 e.error[i] =
                     TRUST.error(level, (of(first) - of(second)).abs(), (of(second) - of(last)).abs());
@@ -241,7 +247,7 @@ impl Baker for Sheen {
 const TRUST: Trust = Trust { gain: &[1.0], memory: &[0.25] };
 
 /// Value of a channel.
-fn channel(part: Part, found: &Found) -> f64 {
+fn channel(part: Part, found: &FoundMatrix) -> f64 {
     match part {
         Part::Lobe { b, coded } => {
             let value = if b { found.lobe.b } else { found.lobe.a };
@@ -266,7 +272,13 @@ impl Sheen {
     }
 
     /// The texel at one level; the lobe of the level before is where the search starts.
-    fn level(&self, sigma: f64, mu: f64, level: usize, before: Option<&Found>) -> Result<Found, TexelError> {
+    fn level(
+        &self,
+        sigma: f64,
+        mu: f64,
+        level: usize,
+        before: Option<&FoundMatrix>,
+    ) -> Result<FoundMatrix, TexelError> {
         let cell = {
             let mut solved = self.solved.lock().unwrap_or_else(PoisonError::into_inner);
             Arc::clone(solved.entry((sigma.to_bits(), level)).or_default())
@@ -277,7 +289,8 @@ impl Sheen {
         let slab = slab.as_ref().ok_or(TexelError::NoRule { what: "a layer of fibres as thin as these" })?;
         let theta = libm::acos(mu.clamp(0.0, 1.0));
         let reflectance = slab.reflected(theta);
-        let mut found = Found { lobe: Sheared { a: 1.0, b: 0.0, l3: 0.0, evaluations: 0 }, reflectance };
+        let mut found =
+            FoundMatrix { lobe: Sheared { a: 1.0, b: 0.0, l3: 0.0, evaluations: 0 }, reflectance };
         if self.fits {
             let points = lobe(slab, sigma, theta, nodes, reflectance >= DARK);
             let last = before.map(|b| [b.lobe.a, b.lobe.b]);

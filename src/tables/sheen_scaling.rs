@@ -13,7 +13,7 @@ use super::{
 use crate::cite;
 use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
-use crate::models::{Param, Preset};
+use crate::models::{DefaultValue, Param};
 
 const SCALING: ChannelInfo = ChannelInfo {
     id: "sheen.scaling",
@@ -51,7 +51,7 @@ pub static INFO: TableInfo = TableInfo {
         "s",
         "largest component of the sheen colour",
         [0.0, 1.0],
-        Preset::Value(1.0),
+        DefaultValue::Value(1.0),
     )],
     laws: &["finite", "range", "honest"],
     axes: default_axes,

@@ -10,7 +10,7 @@ use super::{
 use crate::cite;
 use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, MAX_CHANNELS};
-use crate::models::{Param, Params, Preset};
+use crate::models::{DefaultValue, Param, Params};
 use crate::terms::metals;
 use crate::terms::thin_film::{self, Film};
 
@@ -65,12 +65,24 @@ pub static INFO: TableInfo = TableInfo {
             "below the film: `index`, n3 and k3 as given; a measured metal; or `rows`, those of `nk`",
             &["index", "au", "ag", "al", "cu", "fe", "ni", "ti", "w", "rows"],
         ),
-        Param::number("n2", "n_2", "index of the film", [1.0, 10.0], Preset::Value(1.33)),
-        Param::number("n3", "n_3", "index below the film, real part", [0.0, 1e5], Preset::Value(1.5))
+        Param::number("n2", "n_2", "index of the film", [1.0, 10.0], DefaultValue::Value(1.33)),
+        Param::number("n3", "n_3", "index below the film, real part", [0.0, 1e5], DefaultValue::Value(1.5))
             .coloured(),
-        Param::number("k3", "k_3", "extinction coefficient below the film", [0.0, 100.0], Preset::Value(0.0))
-            .coloured(),
-        Param::number("orders", "m", "of layout series: orders summed", [1.0, 100.0], Preset::Value(2.0)),
+        Param::number(
+            "k3",
+            "k_3",
+            "extinction coefficient below the film",
+            [0.0, 100.0],
+            DefaultValue::Value(0.0),
+        )
+        .coloured(),
+        Param::number(
+            "orders",
+            "m",
+            "of layout series: orders summed",
+            [1.0, 100.0],
+            DefaultValue::Value(2.0),
+        ),
         ETA,
         NK,
     ],

@@ -10,7 +10,7 @@ use crate::grid::{Axis, Warp};
 use crate::integrate::{Estimate, View};
 use crate::math::frame;
 use crate::models::normals::{Pair, direction};
-use crate::models::{Param, Preset, normals};
+use crate::models::{DefaultValue, Param, normals};
 use crate::terms::{schlick_masking, vcavity};
 use std::f64::consts::PI;
 
@@ -72,7 +72,7 @@ pub static INFO: TableInfo = TableInfo {
                 "phi",
                 "of vcavity: azimuth between both directions; pi is the plane of incidence",
                 [0.0, 2.0 * PI],
-                Preset::Value(PI),
+                DefaultValue::Value(PI),
             )
         },
     ],

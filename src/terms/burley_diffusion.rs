@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 /// How `s` follows from the albedo, and what the length `l` then is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Fit {
+pub enum ShapeFit {
     /// Searchlight: a perpendicular beam; l is the mean free path. `s = 1.85 − A + 7 |A − 0.8|³`.
     Searchlight,
     /// Diffuse surface transmission; l is the mean free path. `s = 1.9 − A + 3.5 (A − 0.8)²`.
@@ -18,15 +18,15 @@ pub enum Fit {
 /// Source: [Christensen and Burley 2015](crate::cite::CHRISTENSEN_BURLEY_2015) Eqs. 5, 6 and 8.
 /// Domain: albedo A in [0, 1]. Range: (0.8, 25).
 #[must_use]
-pub fn scale(fit: Fit, albedo: f64) -> f64 {
+pub fn scale(fit: ShapeFit, albedo: f64) -> f64 {
     let square = |x: f64| x * x;
     match fit {
-        Fit::Searchlight => {
+        ShapeFit::Searchlight => {
             let x = (albedo - 0.8).abs();
             1.85 - albedo + 7.0 * x * x * x
         }
-        Fit::Diffuse => 1.9 - albedo + 3.5 * square(albedo - 0.8),
-        Fit::DiffuseMeanFreePath => 3.5 + 100.0 * square(square(albedo - 0.33)),
+        ShapeFit::Diffuse => 1.9 - albedo + 3.5 * square(albedo - 0.8),
+        ShapeFit::DiffuseMeanFreePath => 3.5 + 100.0 * square(square(albedo - 0.33)),
     }
 }
 
@@ -36,7 +36,7 @@ pub fn scale(fit: Fit, albedo: f64) -> f64 {
 /// Domain: r > 0, l > 0. Range: > 0; grows as 1/r towards 0, so bake r R. Guard: r ≤ 0 counts as 1e-300 l, which is finite.
 /// Law: 2π ∫ R r dr = A exactly. Accuracy: relative 1e-14 (`tests/terms.rs`).
 #[must_use]
-pub fn profile(fit: Fit, albedo: f64, length: f64, r: f64) -> f64 {
+pub fn profile(fit: ShapeFit, albedo: f64, length: f64, r: f64) -> f64 {
     let r = r.max(1e-300 * length);
     let x = scale(fit, albedo) * (r / length);
     albedo * (scale(fit, albedo) / length) * (libm::exp(-x) + libm::exp(-x / 3.0)) / (8.0 * PI * r)

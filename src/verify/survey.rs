@@ -26,7 +26,7 @@ const NEGLIGIBLE: f64 = 1e-20;
 
 /// A number and the parameters and directions where it was found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Found {
+pub struct Surveyed {
     /// The number.
     pub value: f64,
     /// Where.
@@ -39,11 +39,11 @@ pub struct Survey {
     /// Model id.
     pub model: &'static str,
     /// Largest relative difference of f(wo, wi) and f(wi, wo).
-    pub reciprocity: Found,
+    pub reciprocity: Surveyed,
     /// Largest directional albedo; NaN if none could be integrated.
-    pub largest_e: Found,
+    pub largest_e: Surveyed,
     /// Values that are negative or not finite.
-    pub faulty: Option<Found>,
+    pub faulty: Option<Surveyed>,
     /// Claims that do not hold, and laws that hold although not claimed.
     pub verdict: Verdict,
     /// The verdict in words.
@@ -73,7 +73,7 @@ pub fn survey(info: &'static ModelInfo) -> Survey {
 
 /// A model of which nothing is known yet.
 fn unreached(info: &'static ModelInfo) -> Survey {
-    let nothing = |value| Found { value, at: "nowhere".to_owned() };
+    let nothing = |value| Surveyed { value, at: "nowhere".to_owned() };
     Survey {
         model: info.id,
         reciprocity: nothing(0.0),
@@ -108,12 +108,12 @@ fn pairs(model: &dyn Brdf, label: &str, s: &mut Survey) {
         let (forth, back) = (model.eval(a, b), model.eval(b, a));
         let at = || format!("{label}, mu {:.3} and {:.3}", a.z, b.z);
         if !(forth.is_finite() && forth >= 0.0) {
-            s.faulty.get_or_insert(Found { value: forth, at: at() });
+            s.faulty.get_or_insert(Surveyed { value: forth, at: at() });
         }
         let scale = forth.abs().max(back.abs());
         let difference = (forth - back).abs() / scale;
         if scale > NEGLIGIBLE && difference > s.reciprocity.value {
-            s.reciprocity = Found { value: difference, at: at() };
+            s.reciprocity = Surveyed { value: difference, at: at() };
         }
     }
 }
@@ -128,7 +128,7 @@ fn albedos(cancel: &Cancel, model: &dyn Brdf, label: &str, s: &mut Survey) -> Re
             && (s.largest_e.value.is_nan() || lower > s.largest_e.value)
             && e.error[0] < 0.1 * e.value[0].max(1e-3)
         {
-            s.largest_e = Found { value: e.value[0], at: format!("{label}, mu {mu:.4}") };
+            s.largest_e = Surveyed { value: e.value[0], at: format!("{label}, mu {mu:.4}") };
         }
     }
     Ok(())
@@ -189,7 +189,7 @@ pub fn parameter_sets(info: &'static ModelInfo) -> Vec<(String, Params)> {
 }
 
 fn follows(param: &crate::models::Param, id: &str) -> bool {
-    matches!(param.kind, Kind::Number { preset: crate::models::Preset::Of(of), .. } if of == id)
+    matches!(param.kind, Kind::Number { preset: crate::models::DefaultValue::Of(of), .. } if of == id)
 }
 
 fn walk(min: f64, max: f64) -> Vec<f64> {

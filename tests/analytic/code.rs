@@ -3,14 +3,14 @@
 use crate::analytic::split::GGX;
 use crate::tolerance::{SHADER_SINGLE, near};
 use crate::{analytic::split, common};
-use brdfbake::report::analytic::{Fit, Form, Lang, table};
+use brdfbake::report::analytic::{FittedFormula, Form, Lang, table};
 use naga::front::{glsl, wgsl};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::path::PathBuf;
 use std::process::Command;
 
 /// A split sum, and a table with every kind of step: a coupled axis, two channels of another range than [0, 1].
-fn fits() -> Vec<Fit> {
+fn fits() -> Vec<FittedFormula> {
     use brdfbake::grid::{Texel::Endpoint, Warp};
     let coupled = Warp::Coupled { to: "alpha".into(), power: 3.0, scale: 2.0, exponent: 1.0 };
     let axes = vec![
@@ -21,7 +21,7 @@ fn fits() -> Vec<Fit> {
     vec![GGX.clone(), table(&bound, Form::Rational, 2).unwrap(), table(&bound, Form::Polynomial, 3).unwrap()]
 }
 
-fn name(fit: &Fit) -> &'static str {
+fn name(fit: &FittedFormula) -> &'static str {
     if fit.arguments()[1] == "alpha" { "split_sum" } else { "dfg_fit" }
 }
 
@@ -51,7 +51,7 @@ fn run(command: &mut Command) -> Option<String> {
 }
 
 /// The numbers that a program printed, one point a line, are those that the library computes.
-fn compare(what: &str, fit: &Fit, printed: &str) {
+fn compare(what: &str, fit: &FittedFormula, printed: &str) {
     assert_eq!(printed.lines().count(), points().len());
     for (line, at) in printed.lines().zip(points()) {
         let want = fit.evaluate(&at);
@@ -129,7 +129,7 @@ fn python_computes_the_same() {
     }
 }
 
-fn validate(what: &str, module: &naga::Module, fit: &Fit) {
+fn validate(what: &str, module: &naga::Module, fit: &FittedFormula) {
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
     validator.validate(module).unwrap_or_else(|e| panic!("{what}: {e:?}"));
     let (_, f) = module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(name(fit))).unwrap();

@@ -1,13 +1,13 @@
 //! Split sums: the aims, and values that this program did not make.
 
 use crate::common;
-use brdfbake::report::analytic::{DEGREES, Fit, FitError, split_sum};
+use brdfbake::report::analytic::{DEGREES, FitError, FittedFormula, split_sum};
 use brdfbake::tables::spec::Request;
 use std::sync::LazyLock;
 
-pub(crate) static GGX: LazyLock<Fit> = LazyLock::new(|| fit("ggx", 3).unwrap());
+pub(crate) static GGX: LazyLock<FittedFormula> = LazyLock::new(|| fit("ggx", 3).unwrap());
 
-pub(crate) fn fit(model: &str, degree: usize) -> Result<Fit, FitError> {
+pub(crate) fn fit(model: &str, degree: usize) -> Result<FittedFormula, FitError> {
     let request = Request {
         kind: "dfg".into(),
         layout: Some("factored".into()),
@@ -110,7 +110,7 @@ fn results_are_in_range_and_denominators_positive() {
 
 #[test]
 fn more_terms_are_nearer() {
-    let all: Vec<Fit> = (DEGREES[0]..=DEGREES[1]).map(|d| fit("ggx", d).unwrap()).collect();
+    let all: Vec<FittedFormula> = (DEGREES[0]..=DEGREES[1]).map(|d| fit("ggx", d).unwrap()).collect();
     for pair in all.windows(2) {
         assert!(pair[0].operations() < pair[1].operations());
         assert!(pair[0].largest(true) > pair[1].largest(true));

@@ -3,10 +3,10 @@
 use crate::common::{axis, request};
 use crate::tolerance::{INTEGRAL_5_TWICE, near};
 use brdfbake::grid::{Texel, Warp};
-use brdfbake::report::analytic::{Fit, FitError, Form, Lang, table};
+use brdfbake::report::analytic::{FitError, FittedFormula, Form, Lang, table};
 use brdfbake::tables::spec::Request;
 
-fn of(kind: &str, layout: &str, form: Form, degree: usize) -> Fit {
+fn of(kind: &str, layout: &str, form: Form, degree: usize) -> FittedFormula {
     let request = Request { kind: kind.into(), layout: Some(layout.into()), ..Request::default() };
     table(&request.bind().unwrap(), form, degree).unwrap()
 }
@@ -59,7 +59,7 @@ fn matrices_are_judged_by_their_lobes() {
     let mu = axis("mu", 8, Texel::Endpoint).over([0.2, 1.0]);
     let bound = request("ltc-matrix", "over-m22", r#"{"alpha": 0.3}"#, vec![mu]);
     let [coarse, fine] = [1, 4].map(|degree| table(&bound, Form::Polynomial, degree).unwrap());
-    let lobes = |fit: &Fit| fit.lobes.unwrap()[0].errors;
+    let lobes = |fit: &FittedFormula| fit.lobes.unwrap()[0].errors;
     for fit in [&coarse, &fine] {
         let [l3, l1] = lobes(fit);
         assert!(l3.nearest > 0.0 && l1.nearest > 0.0 && l1.fitted < 2.0, "{l3:?} {l1:?}");

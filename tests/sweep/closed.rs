@@ -454,9 +454,9 @@ impl Profile {
             "burley" => {
                 let (albedo, length) = (rgb("albedo"), rgb("length"));
                 let fit = match p.choice("fit").unwrap() {
-                    "searchlight" => burley_diffusion::Fit::Searchlight,
-                    "diffuse" => burley_diffusion::Fit::Diffuse,
-                    _ => burley_diffusion::Fit::DiffuseMeanFreePath,
+                    "searchlight" => burley_diffusion::ShapeFit::Searchlight,
+                    "diffuse" => burley_diffusion::ShapeFit::Diffuse,
+                    _ => burley_diffusion::ShapeFit::DiffuseMeanFreePath,
                 };
                 Profile::Burley(
                     [0, 1, 2].map(|c| length[c] / burley_diffusion::scale(fit, albedo[c])),

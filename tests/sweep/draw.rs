@@ -51,7 +51,8 @@ pub(crate) fn parameters(model: &ModelInfo, seeds: &mut Seeds) -> Map<String, Va
     // of two widths that follow a common one, half of the draws give both
     let split = seeds.index(2) == 0;
     for param in model.params {
-        let follows = matches!(param.kind, Kind::Number { preset: brdfbake::models::Preset::Of(_), .. });
+        let follows =
+            matches!(param.kind, Kind::Number { preset: brdfbake::models::DefaultValue::Of(_), .. });
         let value = match param.kind {
             Kind::Choice(words) => json!(words[seeds.index(words.len())]),
             Kind::Number { min, max, .. } => json!(number(param, min, max, seeds)),

@@ -6,7 +6,7 @@ use crate::tolerance::{
     PUBLISHED_FIT_DIPOLE, PUBLISHED_FIT_INVERSE, TWO_ULPS, near,
 };
 use brdfbake::integrate::gauss;
-use brdfbake::terms::burley_diffusion::{self, Fit};
+use brdfbake::terms::burley_diffusion::{self, ShapeFit};
 use brdfbake::terms::dipole::{self, Dipole};
 use brdfbake::terms::skin::{self, Channel};
 use brdfbake::terms::{blackbody, fresnel, medium};
@@ -66,7 +66,7 @@ fn skin_profiles_are_white() {
 
 #[test]
 fn normalised_diffusion_is_normalised_and_inverts() {
-    for fit in [Fit::Searchlight, Fit::Diffuse, Fit::DiffuseMeanFreePath] {
+    for fit in [ShapeFit::Searchlight, ShapeFit::Diffuse, ShapeFit::DiffuseMeanFreePath] {
         for albedo in [0.1, 0.5, 0.8, 1.0] {
             let norm = disk(|r| burley_diffusion::profile(fit, albedo, 0.7, r));
             // r R is finite at 0: e^-30 of the range is left out
@@ -79,7 +79,7 @@ fn normalised_diffusion_is_normalised_and_inverts() {
         assert_relative(&format!("{xi}"), burley_diffusion::cdf(x), xi, bound.max(TWO_ULPS));
     }
     assert!(burley_diffusion::cdf_inverse(0.0) == 0.0 && burley_diffusion::cdf_inverse(1.0) > 100.0);
-    assert!(burley_diffusion::profile(Fit::Diffuse, 0.5, 1.0, 0.0).is_finite());
+    assert!(burley_diffusion::profile(ShapeFit::Diffuse, 0.5, 1.0, 0.0).is_finite());
 }
 
 #[test]

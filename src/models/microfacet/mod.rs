@@ -15,7 +15,7 @@ pub use crate::terms::ggx::Ggx;
 pub use crate::terms::student_t::StudentT;
 pub use fresnel::Fresnel;
 
-use super::{Brdf, Functional, Param, ParamError, Params, Preset, Sample};
+use super::{Brdf, DefaultValue, Functional, Param, ParamError, Params, Sample};
 use crate::integrate::{BATCH, Chart, Estimate, FacetLobe, Nodes};
 use crate::math::figures::exact;
 use crate::math::frame;
@@ -173,7 +173,7 @@ pub const ALPHA: Param = Param::number(
     "alpha",
     "width of the distribution; alpha = roughness^2",
     [0.0, 2.0],
-    Preset::Value(0.25),
+    DefaultValue::Value(0.25),
 )
 .also(&["m"]);
 /// `alpha_x`.
@@ -182,7 +182,7 @@ pub const ALPHA_X: Param = Param::number(
     "alpha_x",
     "width along the tangent; equal to alpha unless given",
     [0.0, 2.0],
-    Preset::Of("alpha"),
+    DefaultValue::Of("alpha"),
 );
 /// `alpha_y`.
 pub const ALPHA_Y: Param = Param::number(
@@ -190,7 +190,7 @@ pub const ALPHA_Y: Param = Param::number(
     "alpha_y",
     "width along the bitangent; equal to alpha unless given",
     [0.0, 2.0],
-    Preset::Of("alpha"),
+    DefaultValue::Of("alpha"),
 );
 /// `masking`.
 pub const MASKING: Param = Param::choice(
@@ -200,11 +200,11 @@ pub const MASKING: Param = Param::choice(
 );
 /// `f0`.
 pub const F0: Param =
-    Param::number("f0", "F0", "reflectance at normal incidence", [0.0, 1.0], Preset::Value(1.0))
+    Param::number("f0", "F0", "reflectance at normal incidence", [0.0, 1.0], DefaultValue::Value(1.0))
         .also(&["F0"]);
 /// `f90`.
 pub const F90: Param =
-    Param::number("f90", "F90", "reflectance at grazing incidence", [0.0, 1.0], Preset::Value(1.0))
+    Param::number("f90", "F90", "reflectance at grazing incidence", [0.0, 1.0], DefaultValue::Value(1.0))
         .also(&["F90"]);
 /// `eta` of a dielectric.
 pub const ETA_DIELECTRIC: Param = Param::number(
@@ -212,7 +212,7 @@ pub const ETA_DIELECTRIC: Param = Param::number(
     "eta",
     "relative index of refraction, below over above; below 1 from inside, with total internal reflection",
     [1e-3, 1e3],
-    Preset::Value(1.5),
+    DefaultValue::Value(1.5),
 )
 .also(&["ior"]);
 /// `eta` of a conductor.
@@ -221,7 +221,7 @@ pub const ETA_CONDUCTOR: Param = Param::number(
     "eta",
     "real part of the relative index of refraction",
     [1e-3, 1e3],
-    Preset::Value(0.2),
+    DefaultValue::Value(0.2),
 )
 .also(&["n"]);
 /// `outside` of a conductor.
@@ -230,11 +230,16 @@ pub const OUTSIDE: Param = Param::number(
     "eta_i",
     "index of the medium above, 1.5 for a coat of varnish: eta and k are divided by it",
     [0.1, 10.0],
-    Preset::Value(1.0),
+    DefaultValue::Value(1.0),
 );
 /// `k` of a conductor.
-pub const K: Param =
-    Param::number("k", "k", "extinction coefficient; 0 is a dielectric", [0.0, 1e3], Preset::Value(3.9));
+pub const K: Param = Param::number(
+    "k",
+    "k",
+    "extinction coefficient; 0 is a dielectric",
+    [0.0, 1e3],
+    DefaultValue::Value(3.9),
+);
 
 /// The masking that the parameters name.
 ///

@@ -1,6 +1,6 @@
 //! Values of the declared parameters, resolved. A name that is not declared is an error wherever it is asked for.
 
-use super::{Column, Kind, Param, ParamError, Preset};
+use super::{Column, DefaultValue, Kind, Param, ParamError};
 use crate::math::figures::exact;
 use serde_json::Value as Json;
 
@@ -190,8 +190,8 @@ impl Params {
 /// The default of a parameter, after those that are declared before it.
 fn preset(model: &'static str, param: &Param, before: &[(&'static str, Value)]) -> Result<Value, ParamError> {
     Ok(match param.kind {
-        Kind::Number { preset: Preset::Value(v), .. } => Value::Number(v),
-        Kind::Number { preset: Preset::Of(id), .. } => {
+        Kind::Number { preset: DefaultValue::Value(v), .. } => Value::Number(v),
+        Kind::Number { preset: DefaultValue::Of(id), .. } => {
             let leader = before.iter().find(|(k, _)| *k == id).map(|(_, v)| v.clone());
             let what = "a number before it";
             leader.ok_or_else(|| ParamError::Undeclared { model, key: id.to_owned(), what })?

@@ -100,7 +100,7 @@ pub fn survey_with(
     let pictures = Pictures::new(options.root.clone(), options.pixels);
     let known: &Kept = kept;
     let one = |path: &PathBuf| match known.find(path) {
-        Some(entry) => Ok(Found { all: (entry.scene.clone(), entry.needs.clone()), new: None }),
+        Some(entry) => Ok(FoundFile { all: (entry.scene.clone(), entry.needs.clone()), new: None }),
         None => look(path, &pictures, options),
     };
     let read: Vec<_> = files.par_iter().map(one).collect();
@@ -109,7 +109,7 @@ pub fn survey_with(
     let mut joined = Joined::default();
     for ((result, path), name) in read.into_iter().zip(files).zip(names) {
         match result {
-            Ok(Found { all, new }) => {
+            Ok(FoundFile { all, new }) => {
                 if let Some((before, touched)) = new {
                     count += 1;
                     kept.keep(path, before, touched, &all);
@@ -130,12 +130,12 @@ pub fn survey_with(
 type New = (Option<kept::Stamp>, Vec<PathBuf>);
 
 /// What was found in a scene.
-struct Found {
+struct FoundFile {
     all: (Surveyed, Needs),
     new: Option<New>,
 }
 
-fn look(path: &Path, pictures: &Pictures, options: &SurveyOptions) -> Result<Found, SceneError> {
+fn look(path: &Path, pictures: &Pictures, options: &SurveyOptions) -> Result<FoundFile, SceneError> {
     let before = kept::stamp(path);
     let (scene, hash) = {
         let texels = options.texels == Texels::Referenced;
@@ -148,7 +148,7 @@ fn look(path: &Path, pictures: &Pictures, options: &SurveyOptions) -> Result<Fou
     let (materials, images) = (scene.materials.len(), scene.images.len());
     let warnings = scene.warnings.iter().map(ToString::to_string).collect();
     let all = (Surveyed { file: scene.file_name, hash, materials, images, warnings }, needs);
-    Ok(Found { all, new: Some((before, touched)) })
+    Ok(FoundFile { all, new: Some((before, touched)) })
 }
 
 /// The paths below the folder that all of them share: no more of the machine than tells them apart.

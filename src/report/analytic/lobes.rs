@@ -1,6 +1,6 @@
 //! Formulas whose results are the parameters of a lobe are judged by the lobe, not by the parameters: how far it is from the model.
 
-use super::{Fit, single};
+use super::{FittedFormula, single};
 use crate::cancel::{Cancel, Cancelled};
 use crate::tables::Bound;
 use rayon::prelude::*;
@@ -42,7 +42,7 @@ pub(super) struct Place {
 pub(super) fn measure(
     cancel: &Cancel,
     bound: &Bound,
-    fit: &Fit,
+    fit: &FittedFormula,
     places: &[Place],
 ) -> Result<Option<[Lobes; 2]>, Cancelled> {
     if places.first().and_then(|p| bound.baker.distance(&p.at, &p.want)).is_none() {

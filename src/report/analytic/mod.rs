@@ -51,7 +51,7 @@ pub struct Off {
 
 /// A formula with its errors.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fit {
+pub struct FittedFormula {
     /// What it is of, in words.
     pub title: String,
     /// Which form and degree, in words.
@@ -114,7 +114,7 @@ struct Sample {
     practical: bool,
 }
 
-impl Fit {
+impl FittedFormula {
     /// The results in f32, operation by operation as the code computes them.
     #[must_use]
     pub fn evaluate(&self, arguments: &[f32]) -> Vec<f32> {
@@ -155,9 +155,9 @@ impl Fit {
         [title, form]: [String; 2],
         (results, ranges): (Vec<String>, Vec<[f64; 2]>),
         samples: &[Sample],
-    ) -> Option<Fit> {
+    ) -> Option<FittedFormula> {
         let formula = formula.simplified();
-        let mut fit = Fit {
+        let mut fit = FittedFormula {
             title,
             form,
             results,

@@ -14,7 +14,7 @@
 //! dropped, one by one, without which GGX was fitted best.
 
 use super::formula::{Formula, name, number, ratio};
-use super::{BETWEEN, Fit, FitError, LINES, PRACTICAL_WEIGHT, STEPS, Sample, TOLERANCE, reached};
+use super::{BETWEEN, FitError, FittedFormula, LINES, PRACTICAL_WEIGHT, STEPS, Sample, TOLERANCE, reached};
 use crate::cancel::Cancel;
 use crate::grid::Axis;
 use crate::grid::expression::Expression;
@@ -86,7 +86,7 @@ struct Node {
 ///
 /// # Errors
 /// [`FitError`].
-pub fn split_sum(bound: &Bound, degree: usize) -> Result<Fit, FitError> {
+pub fn split_sum(bound: &Bound, degree: usize) -> Result<FittedFormula, FitError> {
     split_sum_until(&Cancel::new(), bound, degree)
 }
 
@@ -94,7 +94,7 @@ pub fn split_sum(bound: &Bound, degree: usize) -> Result<Fit, FitError> {
 ///
 /// # Errors
 /// [`FitError`], [`FitError::Cancelled`] among them.
-pub fn split_sum_until(cancel: &Cancel, bound: &Bound, degree: usize) -> Result<Fit, FitError> {
+pub fn split_sum_until(cancel: &Cancel, bound: &Bound, degree: usize) -> Result<FittedFormula, FitError> {
     let spec = &bound.spec;
     let got = || format!("{} with {}", spec.kind.id, spec.layout.ids().collect::<Vec<_>>().join(", "));
     let (axes, decode) = decode(bound).ok_or_else(|| FitError::Table {
@@ -128,7 +128,7 @@ pub fn split_sum_until(cancel: &Cancel, bound: &Bound, degree: usize) -> Result<
         samples.extend(self::nodes(cancel, bound, axes, decode, offset)?.iter().map(Node::sample));
     }
     let formula = albedo.formula(&k_terms, &k, parts.power);
-    Fit::measured(formula, titles, (results, vec![[0.0, top]; 3]), &samples).ok_or_else(pole)
+    FittedFormula::measured(formula, titles, (results, vec![[0.0, top]; 3]), &samples).ok_or_else(pole)
 }
 
 /// The constant term of Q is always 1.

@@ -2,7 +2,7 @@
 
 use super::formula::{Formula, name, ratio};
 use super::lobes;
-use super::{BETWEEN, Fit, FitError, LINES, PRACTICAL_WEIGHT, STEPS, Sample, TOLERANCE, reached};
+use super::{BETWEEN, FitError, FittedFormula, LINES, PRACTICAL_WEIGHT, STEPS, Sample, TOLERANCE, reached};
 use crate::cancel::Cancel;
 use crate::encode::code::coordinates;
 use crate::grid::expression::Expression;
@@ -54,7 +54,7 @@ struct Node {
 ///
 /// # Errors
 /// [`FitError`] for more axes, a degree outside [`Form::degrees`], or a texel without a value.
-pub fn table(bound: &Bound, form: Form, degree: usize) -> Result<Fit, FitError> {
+pub fn table(bound: &Bound, form: Form, degree: usize) -> Result<FittedFormula, FitError> {
     table_until(&Cancel::new(), bound, form, degree)
 }
 
@@ -62,7 +62,12 @@ pub fn table(bound: &Bound, form: Form, degree: usize) -> Result<Fit, FitError> 
 ///
 /// # Errors
 /// [`FitError`], [`FitError::Cancelled`] among them.
-pub fn table_until(cancel: &Cancel, bound: &Bound, form: Form, degree: usize) -> Result<Fit, FitError> {
+pub fn table_until(
+    cancel: &Cancel,
+    bound: &Bound,
+    form: Form,
+    degree: usize,
+) -> Result<FittedFormula, FitError> {
     let spec = &bound.spec;
     let axes = spec.grid.axes();
     let [least, most] = form.degrees();
@@ -99,7 +104,7 @@ pub fn table_until(cancel: &Cancel, bound: &Bound, form: Form, degree: usize) ->
         |n: &Node| axes.iter().zip(n.place.values()).map(|(a, v)| a.quantity.from_base(*v)).collect();
     let sample = |n: &Node| Sample { arguments: arguments(n), want: n.value.clone(), practical: n.practical };
     let samples: Vec<Sample> = all.iter().map(sample).collect();
-    let mut fit = Fit::measured(formula, titles, (results, ranges), &samples).ok_or_else(pole)?;
+    let mut fit = FittedFormula::measured(formula, titles, (results, ranges), &samples).ok_or_else(pole)?;
     let place = |n: Node| lobes::Place {
         at: n.place.values().to_vec(),
         arguments: arguments(&n),

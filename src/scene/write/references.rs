@@ -46,7 +46,7 @@ impl Reference {
 /// # Errors
 /// [`EditError::Json`] for a text that is no JSON.
 pub fn references(text: &str) -> Result<Vec<Reference>, EditError> {
-    let mut found = Found { steps: Vec::new(), all: Vec::new() };
+    let mut found = Collected { steps: Vec::new(), all: Vec::new() };
     let mut reader = serde_json::Deserializer::from_str(text);
     Walk(&mut found).deserialize(&mut reader).map_err(|e| EditError::Json(e.to_string()))?;
     Ok(found.all)
@@ -66,12 +66,12 @@ pub fn escape(path: &str) -> String {
     out
 }
 
-struct Found {
+struct Collected {
     steps: Vec<Owned>,
     all: Vec<Reference>,
 }
 
-struct Walk<'f>(&'f mut Found);
+struct Walk<'f>(&'f mut Collected);
 
 impl<'de> DeserializeSeed<'de> for Walk<'_> {
     type Value = ();

@@ -67,7 +67,7 @@ impl Family {
 
 /// A fit and what it costs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fit {
+pub struct MatrixFit {
     /// The inverse matrix, its middle entry 1.
     pub inverse: Inverse,
     /// `(int |f mu_i / E - D|^3 / int (f mu_i / E)^3)^(1/3)`: 0 for a perfect fit.
@@ -78,10 +78,10 @@ pub struct Fit {
     pub albedo: f64,
 }
 
-impl Fit {
+impl MatrixFit {
     /// Where nothing is reflected there is nothing to be far from.
-    fn dark(inverse: Inverse) -> Fit {
-        Fit { inverse, l3: 0.0, variation: 0.0, albedo: 0.0 }
+    fn dark(inverse: Inverse) -> MatrixFit {
+        MatrixFit { inverse, l3: 0.0, variation: 0.0, albedo: 0.0 }
     }
 }
 
@@ -89,23 +89,23 @@ impl Fit {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fitted {
     /// At the finest level.
-    pub fit: Fit,
+    pub fit: MatrixFit,
     /// Estimated errors: those of the entries are one number, the largest.
     pub error: FitError,
     /// Evaluations of model and lobe.
     pub evaluations: u32,
 }
 
-/// Estimated numerical errors of a [`Fit`]: how well the best matrix is known, not how good it is.
+/// Estimated numerical errors of a [`MatrixFit`]: how well the best matrix is known, not how good it is.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FitError {
     /// Of the entries of the inverse matrix over its middle one.
     pub entries: f64,
-    /// Of [`Fit::l3`].
+    /// Of [`MatrixFit::l3`].
     pub l3: f64,
-    /// Of [`Fit::variation`].
+    /// Of [`MatrixFit::variation`].
     pub variation: f64,
-    /// Of [`Fit::albedo`].
+    /// Of [`MatrixFit::albedo`].
     pub albedo: f64,
 }
 
@@ -153,17 +153,21 @@ pub fn fit(
     let family = if round { Family::Round } else { family };
     let mut nodes = Slices::default();
     let mut evaluations = 0u32;
-    let mut fits: Vec<Fit> = Vec::new();
+    let mut fits: Vec<MatrixFit> = Vec::new();
     let mut last: Option<(Optimum, f64)> = None;
     let mut best: Option<Fitted> = None;
     for level in LEVELS {
         let target = Target::new(model, view, level)?;
         if target.is_dark() {
-            return Ok(Fitted { fit: Fit::dark(Inverse::COSINE), error: FitError::default(), evaluations });
+            return Ok(Fitted {
+                fit: MatrixFit::dark(Inverse::COSINE),
+                error: FitError::default(),
+                evaluations,
+            });
         }
         let found = search(&target, family, last.as_ref(), &mut nodes);
         evaluations = evaluations.saturating_add(found.evaluations);
-        let fit = Fit {
+        let fit = MatrixFit {
             inverse: found.inverse,
             l3: libm::cbrt(found.at.value / target.cube),
             variation: target.variation(&found.inverse),
@@ -228,7 +232,7 @@ fn settle(target: &Target<'_>, mut start: Inverse, family: Family, nodes: &mut S
 ///
 /// As [`Trust`] says, with all of the difference before last remembered. Measured on GGX, 484 texels, against fits good to 3e-5: the
 /// error of the entries is below it for 97 % of texels at 2.4e-4 and 1e-3, and for all but one at 1e-2; at most 10 times above.
-fn error(fits: &[Fit]) -> FitError {
+fn error(fits: &[MatrixFit]) -> FitError {
     let [.., first, second, last] = fits else { return FitError::default() };
     let (before, now) = (difference(first, second), difference(second, last));
     let worse = |before: f64, now: f64| TRUST.error(fits.len() - 1, before, now);
@@ -240,7 +244,7 @@ fn error(fits: &[Fit]) -> FitError {
     }
 }
 
-fn difference(a: &Fit, b: &Fit) -> FitError {
+fn difference(a: &MatrixFit, b: &MatrixFit) -> FitError {
     let (p, q) = (&a.inverse, &b.inverse);
     let entries = [p.m11 - q.m11, p.m13 - q.m13, p.m31 - q.m31, p.m33 - q.m33];
     FitError {
@@ -296,15 +300,15 @@ pub fn nearest_sheared(
 ///
 /// # Errors
 /// As [`fit`].
-pub fn judge(model: &dyn Brdf, view: View, inverse: &Inverse, level: f64) -> Result<Fit, TexelError> {
+pub fn judge(model: &dyn Brdf, view: View, inverse: &Inverse, level: f64) -> Result<MatrixFit, TexelError> {
     let target = Target::new(model, view, level)?;
     if target.is_dark() {
-        return Ok(Fit::dark(*inverse));
+        return Ok(MatrixFit::dark(*inverse));
     }
     let mut nodes = Slices::default();
     target.nodes_for(inverse, &mut nodes);
     let at = objective::objective(&nodes, inverse);
-    Ok(Fit {
+    Ok(MatrixFit {
         inverse: *inverse,
         l3: libm::cbrt(at.value / target.cube),
         variation: target.variation(inverse),
@@ -316,8 +320,8 @@ pub fn judge(model: &dyn Brdf, view: View, inverse: &Inverse, level: f64) -> Res
 ///
 /// # Errors
 /// As [`fit`].
-pub fn judged(model: &dyn Brdf, view: View, inverse: &Inverse) -> Result<(Fit, f64), TexelError> {
-    let apart = |a: &Fit, b: &Fit| (a.l3 - b.l3).abs().max((a.variation - b.variation).abs());
+pub fn judged(model: &dyn Brdf, view: View, inverse: &Inverse) -> Result<(MatrixFit, f64), TexelError> {
+    let apart = |a: &MatrixFit, b: &MatrixFit| (a.l3 - b.l3).abs().max((a.variation - b.variation).abs());
     let mut last = judge(model, view, inverse, JUDGED_AT[0])?;
     let mut off = f64::INFINITY;
     for level in &JUDGED_AT[1..] {

@@ -1,6 +1,6 @@
 //! Extremes of declared domains: the ends, just inside them, decades, the neighbourhood of 1, and seeded points.
 
-use crate::models::{Kind, Param, Params, Preset};
+use crate::models::{DefaultValue, Kind, Param, Params};
 use crate::verify::seeds::Seeds;
 
 /// The smallest widths, and the largest exponents and indices, that are asked for where a range is open.
@@ -71,7 +71,7 @@ fn with(defaults: &Params, declared: &'static [Param], param: &Param, value: f64
     let mut params = defaults.clone();
     params.set(param.id, value);
     for other in declared {
-        if matches!(other.kind, Kind::Number { preset: Preset::Of(of), .. } if of == param.id) {
+        if matches!(other.kind, Kind::Number { preset: DefaultValue::Of(of), .. } if of == param.id) {
             params.set(other.id, value);
         }
     }
