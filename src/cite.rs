@@ -229,6 +229,8 @@ cites! {
     SCHLICK_1994 = "Schlick1994", "Schlick: An Inexpensive BRDF Model for Physically-based Rendering, CGF 13(3)", 1994, "https://doi.org/10.1111/1467-8659.1330233";
     /// Snyder, spherical lights.
     SNYDER_1996 = "Snyder1996", "Snyder: Area Light Sources for Real-Time Graphics, Microsoft Research MSR-TR-96-11", 1996, "https://www.microsoft.com/en-us/research/publication/area-light-sources-for-real-time-graphics/";
+    /// Sun and others, fog round a lamp by two lookups.
+    SUN_2005 = "Sun2005", "Sun, Ramamoorthi, Narasimhan, Nayar: A Practical Analytic Single Scattering Model for Real Time Rendering, ACM TOG 24(3)", 2005, "https://doi.org/10.1145/1073204.1073309";
     /// Toksvig, gloss from shortened normals.
     TOKSVIG_2005 = "Toksvig2005", "Toksvig: Mipmapping Normal Maps, journal of graphics tools 10(3)", 2005, "https://doi.org/10.1080/2151237X.2005.10129203";
     /// Tokuyoshi and Kaplanyan, specular antialiasing.

@@ -17,6 +17,7 @@ mod curve;
 mod draw;
 mod facets;
 mod fits;
+mod fog;
 mod glass;
 mod kinds;
 mod known;

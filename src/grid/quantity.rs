@@ -133,6 +133,8 @@ pub static QUANTITIES: &[Quantity] = &[
         "length of the path in a medium, in the unit of its coefficients",
         [0.0, 1e9],
     ),
+    base("tau", "tau", "1", "optical thickness: extinction times a length", [0.0, 1e6]),
+    base("xi", "xi", "rad", "upper end of the integral of airlight", [0.0, FRAC_PI_2]),
     base("temperature", "T", "K", "temperature of what glows", [500.0, 1e6]),
     base("gaussian", "i", "1", "number of a Gaussian of a sum, the narrowest first", [0.0, 63.0]),
     base("u", "u", "1", "uniform random number", [0.0, 1.0]),

@@ -193,6 +193,13 @@ pub static ENGINES: &[Engine] = &[
         &[file("unreal-dfg", "the pre-integrated GF texture", SPLIT)]
     ),
     engine!(
+        "simplepbr",
+        "Panda3D, panda3d-simplepbr",
+        "0.13.1, simplepbr/textures/brdf_lut.txo",
+        Shader("glsl"),
+        &[file("simplepbr-dfg", "the texture object brdf_lut.txo", "(mu, roughness); F0 r + g")]
+    ),
+    engine!(
         "gltf-sample-renderer",
         "glTF Sample Renderer",
         "source/Renderer/shaders/ibl.glsl",

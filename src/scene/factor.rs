@@ -3,6 +3,7 @@
 use super::geometry::Reading;
 use super::image::Look;
 use super::json::Allowed;
+use crate::math::figures::significant;
 use std::fmt;
 
 /// What lets a number take more than one value.
@@ -63,20 +64,25 @@ impl Interval {
     }
 }
 
+/// Digits of an interval that mean something.
+const DIGITS: usize = 12;
+
 impl fmt::Display for Interval {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // products of factors and texels end in rounding
+        let [lo, hi] = [self.lo, self.hi].map(|x| significant(x, DIGITS));
         match self.spread {
-            Spread::Constant if self.value().is_none() => write!(f, "[{}, {}]", self.lo, self.hi),
-            Spread::Constant => write!(f, "{}", self.lo),
-            Spread::Texture => write!(f, "[{}, {}] (texture)", self.lo, self.hi),
-            Spread::Texels(1) => write!(f, "{} (texture of one level)", self.lo),
-            Spread::Texels(n) => write!(f, "[{}, {}] (texture of {n} levels)", self.lo, self.hi),
-            Spread::Covered(1) => write!(f, "{} (texture of one level where the mesh covers it)", self.lo),
+            Spread::Constant if self.value().is_none() => write!(f, "[{lo}, {hi}]"),
+            Spread::Constant => write!(f, "{lo}"),
+            Spread::Texture => write!(f, "[{lo}, {hi}] (texture)"),
+            Spread::Texels(1) => write!(f, "{lo} (texture of one level)"),
+            Spread::Texels(n) => write!(f, "[{lo}, {hi}] (texture of {n} levels)"),
+            Spread::Covered(1) => write!(f, "{lo} (texture of one level where the mesh covers it)"),
             Spread::Covered(n) => {
-                write!(f, "[{}, {}] (texture of {n} levels where the mesh covers it)", self.lo, self.hi)
+                write!(f, "[{lo}, {hi}] (texture of {n} levels where the mesh covers it)")
             }
-            Spread::Maps => write!(f, "[{}, {}] (levels of filtered maps)", self.lo, self.hi),
-            Spread::Animation => write!(f, "[{}, {}] (animation)", self.lo, self.hi),
+            Spread::Maps => write!(f, "[{lo}, {hi}] (levels of filtered maps)"),
+            Spread::Animation => write!(f, "[{lo}, {hi}] (animation)"),
         }
     }
 }

@@ -2,6 +2,8 @@
 //!
 //! To add a table: write `tables/NAME.rs` with a [`TableInfo`], add `pub(crate) mod NAME;` and one line to [`TABLES`].
 
+pub(crate) mod airlight;
+pub(crate) mod airlight_surface;
 pub(crate) mod albedo;
 #[cfg(feature = "unstable")]
 pub mod average_albedo;
@@ -52,6 +54,7 @@ pub(crate) mod merl;
 pub(crate) mod metal;
 pub(crate) mod ndf;
 pub(crate) mod normals;
+mod own;
 mod parts;
 pub(crate) mod phase_function;
 pub(crate) mod phase_sampling;
@@ -89,6 +92,7 @@ use crate::math::figures::exact;
 use crate::models::Param;
 pub use default_axes::Setting;
 pub use driver::{BakeError, OnMiss};
+pub use own::{OwnNumber, OwnTruth, Quadrature};
 pub use role::{Lobe, OtherLobe, Role, Weight};
 pub use selection::Selection;
 pub use source::Source;
@@ -123,6 +127,8 @@ pub static TABLES: &[&TableInfo] = &[
     &phase_function::INFO,
     &phase_sampling::INFO,
     &beer_lambert::INFO,
+    &airlight::INFO,
+    &airlight_surface::INFO,
     &blackbody::INFO,
     &importance::INFO,
     &merl::INFO,

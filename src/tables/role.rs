@@ -1,9 +1,9 @@
 //! What the number of a channel is. The list is closed: a law that matches on it cannot take one quantity for another, and a
 //! baker that is given a role that it does not know refuses to bind.
 
-use super::Spec;
 use super::integral::Functional;
 pub use super::parts::{Band, Component, Distance, Entry, Fitted, Glow, Light, Per, Polarisation, Side};
+use super::{OwnNumber, Spec};
 use crate::models::{Brdf, ModelInfo, ParamError, Params};
 
 /// The lobe that a channel is an integral of.
@@ -208,6 +208,8 @@ pub enum Role {
     FibreLobe(Entry, Option<[f64; 2]>),
     /// How far that lobe is from the layer.
     FibreDistance,
+    /// A number that only one kind has, with its own rule.
+    Own(&'static OwnNumber),
 }
 
 impl Role {
@@ -293,6 +295,7 @@ impl Role {
             Role::Lost(_) => "loss",
             Role::FibreAlbedo(_) => "albedo of a layer",
             Role::FibreLobe(..) => "fitted parameter",
+            Role::Own(own) => own.name,
         }
     }
 
@@ -311,6 +314,7 @@ impl Role {
             Role::PhaseQuantile { angle } => Some(("u", if angle { -1.0 } else { 1.0 })),
             // theta rises with u
             Role::Direction(_, Component::Z) => Some(("u", -1.0)),
+            Role::Own(own) => own.trend,
             _ => None,
         }
     }

@@ -3,7 +3,7 @@
 use crate::engines::compare::truth;
 use crate::engines::support::{Texture, bake, picture};
 use brdfbake::cancel::Cancel;
-use brdfbake::pipeline::suggest::{Suggestion, Want, suggest};
+use brdfbake::pipeline::suggest::{Ranges, Suggestion, Want, suggest, suggest_within};
 use brdfbake::recipe::{Reader, engine, parse};
 use naga::front::{glsl, wgsl};
 use naga::{BinaryOperator, Expression, Function, Handle, Literal, MathFunction, Module, Statement};
@@ -14,6 +14,16 @@ fn suggested(id: &str, table: &str, error: f64, practical: bool) -> Suggestion {
     plan.tables.retain(|t| t.name() == table);
     let want = Want { error, practical, longest: 96 };
     suggest(engine, &plan, want, &Cancel::new()).unwrap().remove(0)
+}
+
+/// The same for what a scene holds: a part of the roughness.
+fn suggested_for(roughness: [f64; 2], error: f64) -> Suggestion {
+    let engine = engine("bevy").unwrap();
+    let mut plan = engine.plan().unwrap();
+    plan.tables.retain(|t| t.name() == "bevy-dfg");
+    let want = Want { error, practical: false, longest: 96 };
+    let ranges = Ranges::from([("bevy-dfg".to_owned(), roughness)]);
+    suggest_within(engine, &plan, want, &ranges, &Cancel::new()).unwrap().remove(0)
 }
 
 /// What a function of a module returns: its expressions walked by hand, as a GPU would.
@@ -65,6 +75,10 @@ fn evaluate(f: &Function, e: Handle<Expression>, arguments: &[Vec<f32>]) -> Vec<
 
 /// The printed recipe, baked; and the largest error of what the printed WGSL reads from it.
 fn read_by_the_lines(s: &Suggestion, name: &str, error: f64) {
+    read_by_the_lines_at(s, name, error, &|j| 0.01 + 0.99 * (f64::from(j) + 0.57) / 40.0);
+}
+
+fn read_by_the_lines_at(s: &Suggestion, name: &str, error: f64, rough: &dyn Fn(i32) -> f64) {
     let found = s.found.as_ref().unwrap_or_else(|| panic!("{:?}", s.notes));
     let out = tempfile::tempdir().unwrap();
     let plan = parse(&found.recipe, "suggested.toml").unwrap_or_else(|e| panic!("{e}\n{}", found.recipe));
@@ -79,7 +93,7 @@ fn read_by_the_lines(s: &Suggestion, name: &str, error: f64) {
     let mut worst: f64 = 0.0;
     for i in 0..40 {
         for j in 0..40 {
-            let (mu, r) = ((f64::from(i) + 0.31) / 40.0, 0.01 + 0.99 * (f64::from(j) + 0.57) / 40.0);
+            let (mu, r) = ((f64::from(i) + 0.31) / 40.0, rough(j));
             let [mu, r] = [mu as f32, r as f32];
             let uv = shader.call(&format!("{name}_uv"), &[vec![mu], vec![r]]);
             let mut texel: Vec<f32> =
@@ -111,6 +125,18 @@ fn a_suggested_table_is_smaller_and_its_lines_read_it() {
     assert!(own.whole[0] > error, "the engine's axes cannot: {own:?}");
     assert!(found.size.whole[0] <= error && found.size.bytes < own.bytes / 4, "{found:?}");
     assert_eq!(found.language, "wgsl");
+}
+
+#[test]
+fn a_scene_makes_the_suggestion_smaller() {
+    let error = 3e-3;
+    let whole = suggested("bevy", "bevy-dfg", error, false).found.unwrap();
+    let s = suggested_for([0.4, 0.6], error);
+    let found = s.found.as_ref().unwrap();
+    assert!(2 * found.size.bytes <= whole.size.bytes, "{found:?} {whole:?}");
+    // read by its lines inside the range, and nowhere else
+    let rough = |j: i32| 0.4 + 0.2 * (f64::from(j) + 0.57) / 40.0;
+    read_by_the_lines_at(&s, "bevy_dfg", error, &rough);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use crate::sweep::draw::{self, Draw};
 use crate::sweep::quad::{self, two_settings};
 use crate::sweep::texel::{Pick, Texel};
 use crate::sweep::truth;
-use crate::sweep::{closed, lines};
+use crate::sweep::{closed, fog, lines};
 use brdfbake::models;
 use brdfbake::terms::{fresnel, schlick};
 use serde_json::{Map, Value, json};
@@ -40,6 +40,8 @@ pub(crate) const KINDS: &[(&str, u64)] = &[
     ("phase-sampling", 100),
     ("beer-lambert", 30),
     ("blackbody", 40),
+    ("airlight", 60),
+    ("airlight-surface", 20),
     ("importance", 30),
     ("merl", 40),
 ];
@@ -200,6 +202,7 @@ fn attempt(kind: &str, pick: &mut Pick) -> Texel {
             let (a, b, c) = (pick.between(0.0, PI), pick.between(0.0, 0.5 * PI), pick.between(0.0, 0.5 * PI));
             Texel::new(kind, &layout, id, params, &[("phi_d", a), ("theta_d", b), ("theta_h", c)])
         }
+        "airlight" | "airlight-surface" => fog::attempt(kind, &layout, pick),
         _ => closed::attempt(kind, &layout, pick),
     }
 }
@@ -231,6 +234,7 @@ pub(crate) fn truths(t: &Texel) -> Truths {
         "importance" | "preintegrated-skin" | "diffusion-kernel" | "diffusion-sampling"
         | "phase-sampling" | "blackbody" => lines::truths(t),
         "thin-film" | "fresnel-conductor" if t.layout == "srgb" => lines::truths(t),
+        "airlight" | "airlight-surface" => fog::truths(t),
         _ => closed::truths(t),
     }
 }

@@ -13,6 +13,40 @@ use std::f64::consts::PI;
 const ANGLE: (&str, f64, f64) = ("deflection", 0.0, PI);
 
 #[test]
+fn airlight_agrees_with_high_precision_values() {
+    let ray = table("airlight", "ray", "{}", &[("tau", 0.0, 200.0), ("xi", 0.0, PI / 2.0)]);
+    // mpmath of 30 digits: int exp(-tau t) / (1 + t^2) dt; for xi = pi/2 Ci(tau) sin(tau) + (pi/2 - Si(tau)) cos(tau)
+    for (tau, xi, value) in [
+        (0.0, 1.25, 1.25),
+        (0.01, PI / 2.0, 1.520_439_219_298_237_252_9),
+        (0.5, PI / 2.0, 0.860_526_765_726_158_562_28),
+        (3.0, PI / 2.0, 0.291_957_710_692_078_772_74),
+        (100.0, PI / 2.0, 0.009_998_002_392_839_961_824_9),
+        (0.5, 0.75, 0.614_180_216_930_582_762_29),
+        (10.0, 0.3, 0.094_315_846_886_141_603_159),
+        (2.0, 1.5, 0.399_020_988_594_182_524_98),
+    ] {
+        let e = texel(&ray, &[tau, xi], 1e-12);
+        close(&format!("F({tau}, {xi})"), e.value[0], value, MANY_ROUNDINGS);
+    }
+    // mpmath, along the ray by s = cos + sin tan(a), and over the azimuth; of a thin medium pi (pi / 2 + 1) in closed form
+    for (n, tau, mu, value) in [
+        (1.0, 0.0, 1.0, PI * (PI / 2.0 + 1.0)),
+        (1.0, 0.5, 1.0, 3.478_781_843_21),
+        (1.0, 0.5, 0.25, 1.528_424_545_97),
+        (1.0, 3.0, 0.75, 0.123_651_937_796),
+        (1.0, 1.0, 0.0, 0.466_512_393_178),
+        (20.0, 0.5, 0.25, 0.089_471_847_171_6),
+    ] {
+        let params = format!(r#"{{"n": {n}}}"#);
+        let table = table("airlight-surface", "surface", &params, &[("tau", 0.0, 200.0), ("mu_i", 0.0, 1.0)]);
+        let e = texel(&table, &[tau, mu], 1e-9);
+        assert!(e.error[0] <= INTEGRAL_9, "{e:?}");
+        close(&format!("G_{n}({tau}, {mu})"), e.value[0], value, INTEGRAL_9);
+    }
+}
+
+#[test]
 fn phase_functions_agree_with_high_precision_values() {
     for (name, id, names) in [
         ("phase_isotropic", "isotropic", &[][..]),

@@ -251,6 +251,7 @@ print("engine,table,x,y,z,component,value,bound")
 for engine, table, n, x, y, masking in [
     ("bevy", "bevy-dfg", 64, 20, 46, correlated),
     ("unreal", "unreal-dfg", 128, 40, 90, schlick_ibl),
+    ("simplepbr", "simplepbr-dfg", 128, 33, 84, schlick_ibl),
     ("gltf-sample-renderer", "gltf-ggx", 1024, 320, 740, correlated),
 ]:
     row(engine, table, (x, y), split(centre(x, n), centre(y, n) ** 2, [SCALE, FC], masking), 1e-6)

@@ -138,6 +138,7 @@ impl<'a> Rules<'a> {
                     .or_else(|| normals::truth(role, asked))
                     .or_else(|| media::truth(role, asked, c))
                     .or_else(|| sphere::truth(role, asked))
+                    .or_else(|| own(role, asked, c))
                     .or_else(|| self.profiles.as_ref().and_then(|p| p.truth(role, asked, c)))
                     .or_else(|| self.colour.as_ref().and_then(|p| p.truth(role, asked, c)));
             }
@@ -278,6 +279,13 @@ impl<'a> Rules<'a> {
             _ => second,
         }
     }
+}
+
+/// The rule that a kind has beside its formula.
+fn own(role: Role, asked: &Asked<'_>, c: usize) -> Option<Truth> {
+    let Role::Own(own) = role else { return None };
+    let (value, error) = (own.truth)(asked.spec, asked.at, asked.targets[c], &quad::integral)?;
+    Some(Truth { value, error })
 }
 
 /// What a rule says of a value.
