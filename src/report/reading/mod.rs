@@ -214,7 +214,7 @@ impl Samples {
 
 /// The channels of a table by the formula of its split sum.
 #[allow(clippy::cast_possible_truncation, reason = "the code computes in f32")]
-fn split_at(bound: &Bound, fit: &analytic::Fit, at: &[f64]) -> Option<Vec<f64>> {
+fn split_at(bound: &Bound, fit: &analytic::FittedFormula, at: &[f64]) -> Option<Vec<f64>> {
     let spec = &bound.spec;
     let [mu, alpha] = [at[spec.axis("mu")?], at[spec.axis("alpha")?]];
     let [scale, bias, e] = fit.evaluate(&[mu as f32, alpha as f32])[..] else { return None };
