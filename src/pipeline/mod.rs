@@ -18,6 +18,9 @@ pub mod fresh;
 #[cfg(not(feature = "unstable"))]
 pub(crate) mod fresh;
 mod gather;
+#[cfg(feature = "unstable")]
+pub mod golden;
+#[cfg(not(feature = "unstable"))]
 pub(crate) mod golden;
 mod in_memory;
 mod manifest;
@@ -34,7 +37,9 @@ pub mod memory;
 #[cfg(not(feature = "unstable"))]
 pub(crate) mod memory;
 mod memory_map;
-#[cfg(feature = "report")]
+#[cfg(all(feature = "report", feature = "unstable"))]
+pub mod pages;
+#[cfg(all(feature = "report", not(feature = "unstable")))]
 pub(crate) mod pages;
 #[cfg(feature = "report")]
 mod pages_map;

@@ -130,7 +130,7 @@ pub(super) static READERS: &[Reader] = &[
             let parsed = [
                 Output::parse(&text).is_ok(),
                 map::Output::parse(&text).is_ok(),
-                brdfbake::encode::layout::Layout::parse(&text).is_ok(),
+                brdfbake::encode::Layout::parse(&text).is_ok(),
             ];
             parsed.contains(&true)
         },

@@ -70,16 +70,6 @@ pub(crate) const WITHOUT: &[(&str, &str, &str)] = &[
         "direction-pdf",
         "as direction; its density is held by the chi-square tests of tests/chi2.rs",
     ),
-    (
-        "average-albedo",
-        "*",
-        "an integral over integrals, minutes a draw: drawn in KINDS, held by tests/tables_energy",
-    ),
-    (
-        "glass-compensation",
-        "*",
-        "an integral over integrals, minutes a draw: drawn in KINDS, held by tests/tables_energy",
-    ),
 ];
 
 /// Models with a Fresnel factor that can be split off, and a width.
