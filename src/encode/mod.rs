@@ -45,14 +45,8 @@
 //! One file, one `mod` line, one line in [`ENCODERS`].
 
 mod apart;
-#[cfg(feature = "unstable")]
 pub mod atomic;
-#[cfg(not(feature = "unstable"))]
-pub(crate) mod atomic;
-#[cfg(feature = "unstable")]
 pub mod beside;
-#[cfg(not(feature = "unstable"))]
-pub(crate) mod beside;
 mod blocks;
 pub(crate) mod code;
 mod coding;
@@ -61,14 +55,8 @@ pub(crate) mod dds;
 mod dds_masks;
 mod dds_read;
 mod dfd;
-#[cfg(feature = "unstable")]
 pub mod diff;
-#[cfg(not(feature = "unstable"))]
-pub(crate) mod diff;
-#[cfg(feature = "unstable")]
 pub mod diff_files;
-#[cfg(not(feature = "unstable"))]
-pub(crate) mod diff_files;
 pub(crate) mod diff_json;
 mod error;
 pub(crate) mod exr;
@@ -83,10 +71,7 @@ pub(crate) mod merl;
 pub(crate) mod mips;
 pub(crate) mod npy;
 mod open;
-#[cfg(feature = "unstable")]
 pub mod option;
-#[cfg(not(feature = "unstable"))]
-pub(crate) mod option;
 pub(crate) mod pfm;
 pub(crate) mod png;
 mod png_read;
