@@ -1,11 +1,12 @@
 //! E(mu) of a lobe as a curve: what coupled and compensated models need at both directions of every pair.
 //!
 //! Piecewise polynomials on panels that halve towards mu = 0, where E behaves like mu ln mu and has corners on the scale of
-//! the roughness: each panel sees every singularity at a distance of its own length, so a fixed degree serves all.
+//! the roughness: each panel sees every singularity at a distance of its own length, so a fixed degree serves all. The last one is a
+//! polynomial in sqrt(1 - mu), which is as smooth as the angle: of cloth E has a term in the cube of the angle.
 
 use super::Brdf;
 use super::integral::directional_albedo;
-use crate::integrate::gauss;
+use crate::integrate::{Estimate, gauss};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -14,7 +15,7 @@ use std::sync::{Arc, Mutex};
 /// Nodes of a panel.
 const ORDER: usize = 16;
 
-/// Octaves: [2^-21, 2^-20], ..., [1/2, 1]; one more panel reaches down to 0.
+/// Octaves: [2^-21, 2^-20], ..., [1/2, 1], the last in two halves; one more panel reaches down to 0.
 const OCTAVES: usize = 21;
 
 /// Lebesgue constant of the points, rounded up: how much errors at the nodes may grow between them.
@@ -54,6 +55,7 @@ fn ends(floor: f64) -> Vec<f64> {
         ends.push(floor);
     }
     ends.push(0.0);
+    ends.insert(1, 0.75);
     ends.reverse();
     ends
 }
@@ -61,6 +63,22 @@ fn ends(floor: f64) -> Vec<f64> {
 /// Chebyshev point of the first kind, in (-1, 1).
 fn point(i: usize) -> f64 {
     -libm::cos(PI * (i as f64 + 0.5) / ORDER as f64)
+}
+
+/// The end in sqrt(1 - mu) of a panel that reaches the normal.
+fn upright(lo: f64, hi: f64) -> Option<f64> {
+    (hi >= 1.0).then(|| (1.0 - lo).sqrt())
+}
+
+/// The cosine at a point of a panel: even in mu, or in sqrt(1 - mu).
+fn cosine(lo: f64, hi: f64, x: f64) -> f64 {
+    match upright(lo, hi) {
+        Some(end) => {
+            let t = 0.5 * end * (1.0 - x);
+            1.0 - t * t
+        }
+        None => 0.5 * ((lo + hi) + (hi - lo) * x),
+    }
 }
 
 /// Curves that were made lately: the texels of a table share the few lobes of its rows.
@@ -96,16 +114,20 @@ impl AlbedoCurve {
             .into_par_iter()
             .map(|i| {
                 let (lo, hi) = (ends[i / ORDER], ends[i / ORDER + 1]);
-                let mu = 0.5 * ((lo + hi) + (hi - lo) * point(i % ORDER));
+                let mu = cosine(lo, hi, point(i % ORDER));
                 let e = directional_albedo(model, mu, tolerance);
                 (1.0 - e.value[0], e.error[0])
             })
             .collect();
         let panels = ends.windows(2).zip(nodes.chunks(ORDER)).map(|(ends, nodes)| Panel::new(ends, nodes));
         let mut curve = AlbedoCurve { panels: panels.collect(), average: 0.0 };
-        // degree ORDER - 1 times mu: Gauss-Legendre of this order is exact
+        curve.panels[0].meet_horizon(&directional_albedo(model, 0.0, tolerance));
+        // degree ORDER - 1 times mu, or in t = sqrt(1 - mu) times 2 t mu: Gauss-Legendre of this order is exact
         let rule = gauss::rule(ORDER);
-        let share = |p: &Panel| rule.integrate(p.lo, p.hi, |mu| 2.0 * mu * p.at(mu));
+        let share = |p: &Panel| match p.upright() {
+            Some(end) => rule.integrate(0.0, end, |t| 4.0 * t * (1.0 - t * t) * p.at(1.0 - t * t)),
+            None => rule.integrate(p.lo, p.hi, |mu| 2.0 * mu * p.at(mu)),
+        };
         curve.average = curve.panels.iter().map(share).sum();
         curve
     }
@@ -165,9 +187,26 @@ impl Panel {
         Panel { lo: ends[0], hi: ends[1], missing, error: error + rest * tail(&missing) }
     }
 
+    /// A view in the horizon, which no node is: where E falls there like a small power of mu, coefficients do not tell what is left out.
+    fn meet_horizon(&mut self, e: &Estimate) {
+        let off = (1.0 - e.value[0] - self.at(0.0)).abs() + e.error[0];
+        // some lobes have no E there
+        if off.is_finite() {
+            self.error = self.error.max(off);
+        }
+    }
+
+    /// The end in sqrt(1 - mu) of the panel that reaches the normal.
+    fn upright(&self) -> Option<f64> {
+        upright(self.lo, self.hi)
+    }
+
     /// By the barycentric formula.
     fn at(&self, mu: f64) -> f64 {
-        let x = (2.0 * mu - (self.lo + self.hi)) / (self.hi - self.lo);
+        let x = match self.upright() {
+            Some(end) => 1.0 - 2.0 * (1.0 - mu).sqrt() / end,
+            None => (2.0 * mu - (self.lo + self.hi)) / (self.hi - self.lo),
+        };
         let (mut above, mut below) = (0.0, 0.0);
         for (i, v) in self.missing.iter().enumerate() {
             let node = point(i);

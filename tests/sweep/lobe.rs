@@ -80,8 +80,11 @@ pub(crate) fn fresnel(params: &Params) -> (Fresnel, Vec<f64>) {
         let number = |id: &str| params.number(id).unwrap();
         return (Fresnel::Schlick { f0: number("f0"), f90: number("f90") }, vec![]);
     };
+    // relative to the medium above, where a model has one
+    let outside = params.optional("outside").unwrap_or(1.0);
+    let (eta, k) = (eta / outside, params.optional("k").map(|k| k / outside));
     let line = if eta < 1.0 { vec![((1.0 - eta) * (1.0 + eta)).sqrt()] } else { vec![] };
-    let factor = params.optional("k").map_or(Fresnel::Dielectric { eta }, |k| Fresnel::Conductor { eta, k });
+    let factor = k.map_or(Fresnel::Dielectric { eta }, |k| Fresnel::Conductor { eta, k });
     (factor, line)
 }
 
