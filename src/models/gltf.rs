@@ -282,7 +282,8 @@ impl Brdf for Lobe {
         let alpha = [self.facets().alpha_x(); 2];
         Some(match self.kind {
             Kind::Diffuse if self.material.curve.is_none() => Chart::Broad { kinks: false, floor: 0.0 },
-            Kind::Diffuse | Kind::Sheen => Chart::Broad { kinks: false, floor: charlie::HORIZON },
+            Kind::Diffuse => Chart::Broad { kinks: true, floor: charlie::HORIZON },
+            Kind::Sheen => Chart::Broad { kinks: false, floor: charlie::HORIZON },
             Kind::Specular if self.material.curve.is_some() => {
                 Chart::Ellipse(FacetLobe { fold: true, ..FacetLobe::smith(alpha, f64::INFINITY) })
             }
