@@ -112,7 +112,7 @@ impl Axial {
     /// `C_n`, as the bakers have it: closed for n = 1.
     fn round(&self, gamma: f64, tolerance: f64) -> (f64, f64) {
         let (a, b, last) = self.parts(gamma);
-        if self.n == 1.0 {
+        if self.n <= 1.0 {
             return (2.0 * (a * last + b * libm::sin(last)), 1e-15);
         }
         let e = line::integrate(&self.azimuths(last), 1, tolerance, &mut |phi, out| {
