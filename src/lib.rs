@@ -31,15 +31,12 @@
 //! [`bake`] takes a request and gives values, errors and axes in memory; [`pipeline::Baked::encode`] makes a file of them. A build
 //! script calls [`build::recipe`].
 
+// Texts of the interface name what works behind it.
+#![allow(rustdoc::private_intra_doc_links, reason = "they are links where private rooms are shown")]
 // What only tests and benchmarks ask of a room is idle where they cannot reach it.
 #![cfg_attr(
     not(feature = "unstable"),
-    allow(
-        dead_code,
-        unused_imports,
-        rustdoc::private_intra_doc_links,
-        reason = "open with the feature `unstable`"
-    )
+    allow(dead_code, unused_imports, reason = "open with the feature `unstable`")
 )]
 
 pub mod build;

@@ -26,6 +26,10 @@ pub(crate) const LONG_SUM: f64 = 3e-15;
 pub(crate) const LIBRARY_PRODUCT: f64 = 5e-15;
 /// A closed form of dozens of operations and functions of libm, or one where a digit cancels.
 pub(crate) const MANY_ROUNDINGS: f64 = 1e-14;
+/// D of a lobe that is fitted to thousands of texels and measured at a few hundred directions: what the directions leave open.
+pub(crate) const MEASURED_MISS: f64 = 0.02;
+/// What storing both lobes in 16 bits may move the mean of D by.
+pub(crate) const STORED_MEAN: f64 = 1e-3;
 /// As [`MANY_ROUNDINGS`] after a subtraction of like numbers or a steep function, which take one digit more.
 pub(crate) const DIGIT_LOST: f64 = 1e-13;
 /// The same twice over, at angles next to the peak of a phase function.

@@ -8,6 +8,7 @@ use brdfbake::encode::{ENCODERS, beside, read};
 use brdfbake::picture;
 use brdfbake::pipeline::audit::audit;
 use brdfbake::pipeline::golden::Golden;
+use brdfbake::pipeline::map::texel::TexelPlace;
 use brdfbake::pipeline::pages::{self, Asked};
 use brdfbake::pipeline::recheck::Beside;
 use brdfbake::plan::scene::Pictures;
@@ -117,10 +118,15 @@ pub(super) static READERS: &[Reader] = &[
     },
     Reader {
         id: "words",
-        covers: &["plan/output.rs parse", "plan/map/output.rs parse", "encode/layout.rs parse"],
+        covers: &[
+            "plan/output.rs parse",
+            "plan/map/output.rs parse",
+            "encode/layout.rs parse",
+            "pipeline/map/texel.rs parse",
+        ],
         seeds: || {
             let words =
-                ["exr:half+positional", "ktx2:roughness=bc4+normal=bc5", "128x64x2:half", "png:unorm16+rgb"];
+                ["exr:half+positional", "ktx2:roughness=bc4+normal=bc5", "128x64x2:half", "maps/m:12,7,1"];
             words.iter().map(|w| w.as_bytes().to_vec()).collect()
         },
         words: &["exr", "ktx2", ":", "+", "=", "x", "half", "bc6h", "roughness"],
@@ -131,6 +137,7 @@ pub(super) static READERS: &[Reader] = &[
                 Output::parse(&text).is_ok(),
                 map::Output::parse(&text).is_ok(),
                 brdfbake::encode::Layout::parse(&text).is_ok(),
+                TexelPlace::parse(&text).is_ok(),
             ];
             parsed.contains(&true)
         },
@@ -152,12 +159,14 @@ pub(super) static READERS: &[Reader] = &[
             "picture/read.rs read_bytes",
             "picture/read.rs read_within",
             "picture/read.rs facts",
+            "picture/read.rs is_picture",
             "picture/levels.rs levels",
         ],
         seeds: pictures,
         words: &["IHDR", "PLTE", "IDAT", "RIFF", "WEBP", "VP8L", "JFIF", "#?RADIANCE"],
         read: |bytes| {
             let known = picture::facts(bytes).is_ok();
+            let _ = picture::is_picture(bytes);
             let read = picture::read_within(bytes, 64 << 20).is_ok();
             let levels =
                 picture::levels(bytes, |n| if n < 64 << 20 { Ok(()) } else { Err(64 << 20) }).is_ok();
