@@ -155,9 +155,9 @@ fn open(request: &Request, target: &Target) -> Result<(Draft, Scene), SceneWrite
     let mut draft = Draft::new(parts).map_err(failed)?;
     if target.binary && !draft.parts.binary {
         let first = files::first_buffer(&draft, request)?;
-        draft.to_binary(first);
+        draft.make_binary(first);
     } else if !target.binary {
-        draft.to_text(&format!("{}.bin", target.stem()));
+        draft.make_text(&format!("{}.bin", target.stem()));
     }
     Ok((draft, scene))
 }

@@ -133,7 +133,7 @@ impl Draft {
 
     /// Makes a GLB of a `.gltf` file. `first` are the bytes of its first buffer, if it has one with a URI: they become the binary
     /// chunk. Other buffers and images stay where they are.
-    pub fn to_binary(&mut self, first: Option<Vec<u8>>) {
+    pub fn make_binary(&mut self, first: Option<Vec<u8>>) {
         if self.parts.binary {
             return;
         }
@@ -156,7 +156,7 @@ impl Draft {
     }
 
     /// Makes a `.gltf` file of a GLB, its binary chunk a file of this name beside it.
-    pub fn to_text(&mut self, name: &str) {
+    pub fn make_text(&mut self, name: &str) {
         if !self.parts.binary {
             return;
         }
