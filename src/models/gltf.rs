@@ -277,16 +277,18 @@ impl Brdf for Lobe {
         }
     }
 
-    /// Below a sheen the larger of two albedos leaves a kink.
+    /// Below a sheen the larger of two albedos leaves a kink, and E of cloth changes by mu ln mu: the trust is that of steep lobes.
     fn chart(&self) -> Option<Chart> {
         let alpha = [self.facets().alpha_x(); 2];
         Some(match self.kind {
             Kind::Diffuse if self.material.curve.is_none() => Chart::Broad { kinks: false, floor: 0.0 },
             Kind::Diffuse => Chart::Broad { kinks: true, floor: charlie::HORIZON },
             Kind::Sheen => Chart::Broad { kinks: false, floor: charlie::HORIZON },
-            Kind::Specular if self.material.curve.is_some() => {
-                Chart::Ellipse(FacetLobe { fold: true, ..FacetLobe::smith(alpha, f64::INFINITY) })
-            }
+            Kind::Specular if self.material.curve.is_some() => Chart::Ellipse(FacetLobe {
+                fold: true,
+                steep: true,
+                ..FacetLobe::smith(alpha, f64::INFINITY)
+            }),
             Kind::Specular | Kind::Coat => Chart::facets(FacetLobe::smith(alpha, f64::INFINITY)),
         })
     }
