@@ -15,7 +15,7 @@ use super::{
 };
 use crate::cite;
 use crate::grid::{Axis, Quantity, Texel};
-use crate::integrate::{Estimate, MAX_CHANNELS, gauss};
+use crate::integrate::{Estimate, MAX_CHANNELS, gauss, line};
 use crate::math::{least_squares, simplex};
 use crate::models::ParamError;
 use std::sync::OnceLock;
@@ -90,6 +90,8 @@ pub struct GaussianFit {
     pub lobes: Vec<(f64, Rgb)>,
     /// `sqrt(int (p - q)^2 dr / int p^2 dr)`.
     pub residual: Rgb,
+    /// Estimated errors of the residuals.
+    pub error: Rgb,
 }
 
 struct Table {
@@ -124,7 +126,11 @@ impl Baker for Table {
         value[0] = variance;
         value[1..4].copy_from_slice(&weights);
         value[4..7].copy_from_slice(&fit.residual);
-        super::closed_form(value, 7)
+        let mut e = super::closed_form(value, 7)?;
+        for (e, error) in e.error[4..7].iter_mut().zip(fit.error) {
+            *e += error;
+        }
+        super::finite(e, 7)
     }
 
     fn is_whole(&self) -> bool {
@@ -167,10 +173,40 @@ pub fn fit(profile: &Profile, count: usize) -> GaussianFit {
     }
     let mut logs = best.map_or_else(|| vec![0.0; count], |b| b.1);
     logs.sort_by(f64::total_cmp);
-    let (weights, residual) = problem.solve(&logs);
-    let lobes =
+    let (weights, _) = problem.solve(&logs);
+    let lobes: Vec<(f64, Rgb)> =
         logs.iter().enumerate().map(|(i, v)| (libm::exp(*v), [0, 1, 2].map(|c| weights[c][i]))).collect();
-    GaussianFit { lobes, residual }
+    let (residual, error) = residuals(profile, &lobes, problem.norm);
+    GaussianFit { lobes, residual, error }
+}
+
+/// Relative accuracy of the integrals in a residual.
+const ACCURACY: f64 = 1e-11;
+
+/// The relative residuals of lobes and their errors, by an adaptive rule: the nodes of the fit are too few for profiles of wide range.
+fn residuals(profile: &Profile, lobes: &[(f64, Rgb)], norm: Rgb) -> (Rgb, Rgb) {
+    let scales = profile.scales();
+    let end = scales[scales.len() - 1];
+    let mut breaks = vec![0.0];
+    breaks.extend(scales);
+    breaks.extend(lobes.iter().flat_map(|l| [0.3, 1.0, 3.0, 9.0].map(|k| k * l.0.sqrt())));
+    breaks.retain(|r| *r <= end);
+    breaks.sort_by(f64::total_cmp);
+    // each over its norm, so that one tolerance serves all
+    let e = line::integrate(&breaks, 6, ACCURACY, &mut |r, out| {
+        let ring = profile.ring(r);
+        for c in 0..3 {
+            let sum: f64 = lobes.iter().map(|(v, w)| w[c] * r / v * libm::exp(-0.5 * r * r / v)).sum();
+            let left = ring[c] - sum;
+            (out[c], out[3 + c]) = (left * left / norm[c], ring[c] * ring[c] / norm[c]);
+        }
+    });
+    let of = |c: usize| (e.value[c] / e.value[3 + c]).sqrt();
+    let error = |c: usize| {
+        let (left, all) = (e.value[c], e.value[3 + c]);
+        ((left + e.error[c]) / (all - e.error[3 + c]).max(f64::MIN_POSITIVE)).sqrt() - of(c)
+    };
+    ([0, 1, 2].map(of), [0, 1, 2].map(error))
 }
 
 /// Logarithms of variances, evenly spread between those whose Gaussians are at their height at two radii.

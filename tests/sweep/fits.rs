@@ -59,7 +59,10 @@ fn gaussians(seed: u64, number: u64, row: usize) -> (String, Vec<Outcome>) {
         .map(|c| {
             let square = |s: &Setting, of: &dyn Fn(f64) -> f64| {
                 let lengths = profile.lengths(c).into_iter().chain(fitted.iter().map(|e| e.value[0].sqrt()));
-                let edges = sorted(sharp(0.0), mark(profile.end(c)), lengths.map(mark).collect());
+                // variances are shared: a narrow channel may hold the Gaussian of a wide one
+                let widths = fitted.iter().map(|e| 12.0 * e.value[0].sqrt());
+                let end = (0..3).map(|c| profile.end(c)).chain(widths).fold(0.0, f64::max);
+                let edges = sorted(sharp(0.0), mark(end), lengths.map(mark).collect());
                 let unit = s.pieces(&edges, 1e-3, &mut |at, _, _| profile.ring(c, at.x).powi(2)).value;
                 s.pieces(&edges, 1e-13 * unit, &mut |at, _, _| of(at.x).powi(2)).value
             };
