@@ -180,6 +180,9 @@ pub fn fit(profile: &Profile, count: usize) -> GaussianFit {
     GaussianFit { lobes, residual, error }
 }
 
+/// Panels between the first scale of a profile and the one that ends at 0, each a quarter of the next.
+const TOWARDS_ZERO: i32 = 4;
+
 /// Relative accuracy of the integrals in a residual.
 const ACCURACY: f64 = 1e-11;
 
@@ -234,8 +237,11 @@ fn radius(profile: &Profile, part: f64) -> f64 {
 
 impl Problem {
     fn new(profile: &Profile) -> Problem {
+        let scales = profile.scales();
+        // the narrowest Gaussian may be far inside the first scale, where some profiles are flat or infinite
         let mut ends = vec![0.0];
-        ends.extend(profile.scales());
+        ends.extend((1..=TOWARDS_ZERO).rev().map(|k| scales[0] * 0.25f64.powi(k)));
+        ends.extend(scales);
         let mut p = Problem {
             radii: Vec::new(),
             weights: Vec::new(),
