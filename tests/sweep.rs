@@ -376,11 +376,14 @@ fn estimates_of_texels_are_honest() {
     assert!(broken.is_empty(), "{} faults:\n{}", broken.len(), broken.join("\n"));
 }
 
-/// Residuals of fits, integrated for the parameters that the product found.
+/// Residuals of fits, integrated for the parameters that the product found; with `HONESTY_SEED`, a number, of other draws, as many as
+/// `HONESTY_DRAWS` says.
 #[test]
 #[ignore = "long: minutes; run by `cargo long`"]
 fn residuals_of_fits_are_honest() {
-    let (labels, outcomes) = fits::run(draw::TEST, 40);
+    let seed = variable("HONESTY_SEED").map_or(draw::TEST, |seed| seed.parse().unwrap());
+    let draws = variable("HONESTY_DRAWS").map_or(40, |n| n.parse().unwrap());
+    let (labels, outcomes) = fits::run(seed, draws);
     let lines = check::lines(&labels, &outcomes);
     check::print(&lines);
     println!("{}", check::worst(&labels, &outcomes, 3, &|o| labels[o.row].clone()));

@@ -189,11 +189,10 @@ const ACCURACY: f64 = 1e-11;
 /// The relative residuals of lobes and their errors, by an adaptive rule: the nodes of the fit are too few for profiles of wide range.
 fn residuals(profile: &Profile, lobes: &[(f64, Rgb)], norm: Rgb) -> (Rgb, Rgb) {
     let scales = profile.scales();
-    let end = scales[scales.len() - 1];
+    // a Gaussian may reach further than the profile
     let mut breaks = vec![0.0];
     breaks.extend(scales);
-    breaks.extend(lobes.iter().flat_map(|l| [0.3, 1.0, 3.0, 9.0].map(|k| k * l.0.sqrt())));
-    breaks.retain(|r| *r <= end);
+    breaks.extend(lobes.iter().flat_map(|l| [0.3, 1.0, 3.0, 12.0].map(|k| k * l.0.sqrt())));
     breaks.sort_by(f64::total_cmp);
     // each over its norm, so that one tolerance serves all
     let e = line::integrate(&breaks, 6, ACCURACY, &mut |r, out| {
