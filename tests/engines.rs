@@ -11,6 +11,7 @@ mod arrays;
 mod compare;
 mod files;
 mod interfaces;
+mod openpbr;
 mod places;
 mod registry;
 mod suggest;

@@ -21,6 +21,8 @@ pub enum FileOption {
     Parts,
     /// `planar`: all texels of one channel, then those of the next, not the channels of each texel together.
     Planar,
+    /// `vec`: the channels of each texel as a constructor of its language, `vec3(0.1, 0.2, 0.3)`.
+    Vectors,
     /// `tiled`: tiles of 64 x 64 pixels instead of scan lines.
     Tiled,
     /// `positional`: channels are called R, G, B (and A) by position, as loaders of colours want them.
@@ -42,6 +44,7 @@ pub static FILE_OPTIONS: &[FileOption] = &[
     FileOption::Layers,
     FileOption::Parts,
     FileOption::Planar,
+    FileOption::Vectors,
     FileOption::Tiled,
     FileOption::Positional,
     FileOption::Luminance,
@@ -61,6 +64,7 @@ impl FileOption {
             FileOption::Layers => "layers",
             FileOption::Parts => "parts",
             FileOption::Planar => "planar",
+            FileOption::Vectors => "vec",
             FileOption::Tiled => "tiled",
             FileOption::Positional => "positional",
             FileOption::Luminance => "y",
@@ -82,6 +86,7 @@ impl FileOption {
             FileOption::Layers => "a third axis makes the layers of an array, not a volume",
             FileOption::Parts => "a third axis makes parts of the file, not slices below each other",
             FileOption::Planar => "one channel after another, not interleaved",
+            FileOption::Vectors => "each texel as vec3(0.1, 0.2, 0.3), a constructor of shader languages",
             FileOption::Tiled => "tiles of 64 x 64 pixels",
             FileOption::Positional => {
                 "channels named R, G, B (A) by position; of two the third is 0, one is written three times"
@@ -177,6 +182,15 @@ impl Shape<'_> {
         }
         if self.has(FileOption::Rgb) && self.channels != 3 {
             return Err(EncodeError::Axes { format, fault: "option rgb is for tables of three channels" });
+        }
+        if self.has(FileOption::Planar) && self.has(FileOption::Vectors) {
+            return Err(EncodeError::Conflict { a: "planar", b: "vec" });
+        }
+        if self.has(FileOption::Vectors) && !(2..=4).contains(&self.channels) {
+            return Err(EncodeError::Axes {
+                format,
+                fault: "option vec is for tables of two to four channels",
+            });
         }
         if self.has(FileOption::Positional) && self.has(FileOption::Luminance) {
             return Err(EncodeError::Conflict { a: "positional", b: "y" });

@@ -123,6 +123,7 @@ pub static QUANTITIES: &[Quantity] = &[
     base("radius", "r", "mm", "distance along the surface from the point of entry", [0.0, 1e4]),
     base("offset", "x", "mm", "distance along one direction from the point of entry", [0.0, 1e4]),
     base("thickness", "d", "mm", "thickness of what light passes through", [0.0, 1e4]),
+    base("opd", "D", "nm", "optical path difference between both faces of a film", [0.0, 1e6]),
     base("film", "d", "nm", "thickness of a thin film", [0.0, 1e5]),
     base("n2", "n_2", "1", "index of a thin film", [1.0, 10.0]),
     base("n3", "n_3", "1", "index below a thin film, real part", [0.0, 1e5]),

@@ -54,6 +54,13 @@ const OSL_GLASS: &str = "linear in mu, roughness and sqrt((eta - 1.001) / 3.999)
 const CORNERS: &str = "texel i at i / (n - 1), clamped";
 
 const SHADER_TABLES: &str = "shader.tables at 97dbe6f5, Apache-2.0";
+const OPENPBR: &str = "linear in the cosine, in roughness and in ior above 1 or 1 / ior below; code / 65535";
+macro_rules! openpbr {
+    ($table:literal, $list:literal) => {
+        file($table, concat!("impl/data/openpbr_", $list, "_data.h"), OPENPBR)
+    };
+}
+
 macro_rules! cycles {
     ($table:literal, $array:literal) => {
         file($table, concat!("table_", $array, " in src/scene/shader.tables"), CORNERS)
@@ -272,6 +279,7 @@ pub static ENGINES: &[Engine] = &[
             cycles!("cycles-ggx-gen-schlick-ior-s", "ggx_gen_schlick_ior_s"),
             cycles!("cycles-ggx-gen-schlick-s", "ggx_gen_schlick_s"),
             cycles!("cycles-sheen-ltc", "sheen_ltc"),
+            cycles!("cycles-thin-film-cmf", "thin_film_cmf"),
         ]
     ),
     engine!(
@@ -361,5 +369,28 @@ pub static ENGINES: &[Engine] = &[
             "the table that the pass BRDFTexture makes at start-up",
             "(mu, 1 - roughness); F0 r + F90 g"
         )]
+    ),
+    engine!(
+        "openpbr",
+        "OpenPBR's reference BSDF",
+        "adobe/openpbr-bsdf a29da96, impl/openpbr_microfacet_multiple_scattering_data.h",
+        Fixed("openpbr_ior_to_exact_index and its like step evenly along every axis"),
+        &[
+            openpbr!("openpbr-dielectric-inside", "ideal_dielectric_energy_complement"),
+            openpbr!("openpbr-dielectric", "ideal_dielectric_energy_complement"),
+            openpbr!("openpbr-dielectric-avg-inside", "ideal_dielectric_avg_energy_complement"),
+            openpbr!("openpbr-dielectric-avg", "ideal_dielectric_avg_energy_complement"),
+            openpbr!("openpbr-opaque-inside", "opaque_dielectric_energy_complement"),
+            openpbr!("openpbr-opaque", "opaque_dielectric_energy_complement"),
+            openpbr!("openpbr-opaque-avg-inside", "opaque_dielectric_avg_energy_complement"),
+            openpbr!("openpbr-opaque-avg", "opaque_dielectric_avg_energy_complement"),
+            openpbr!("openpbr-metal", "ideal_metal_energy_complement"),
+            openpbr!("openpbr-metal-avg", "ideal_metal_avg_energy_complement"),
+            file(
+                "openpbr-sheen",
+                "impl/data/openpbr_ltc_data.h",
+                "linear in mu and roughness on the ends (openpbr_disney_sheen_fetch_coeffs)"
+            ),
+        ]
     ),
 ];

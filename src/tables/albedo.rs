@@ -34,6 +34,19 @@ const R_INSIDE: ChannelInfo =
 const T_INSIDE: ChannelInfo =
     channel("t.inside", "the part that crosses to the outside, at 1 / eta", Light::Transmitted, Side::Inside);
 
+const LOST: ChannelInfo = ChannelInfo {
+    id: "e.lost",
+    meaning: "1 - e, what is lost between facets or crosses",
+    range: [0.0, 1.0],
+    role: Role::Complement(Lobe::Model, Side::Above),
+};
+const LOST_INSIDE: ChannelInfo = ChannelInfo {
+    id: "e.lost.inside",
+    meaning: "1 - e.inside",
+    role: Role::Complement(Lobe::Model, Side::Inside),
+    ..LOST
+};
+
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
     id: "albedo",
@@ -56,7 +69,7 @@ pub static INFO: TableInfo = TableInfo {
             channels: &[R, T, R_INSIDE, T_INSIDE],
         },
     ],
-    mix: Mix::Free(&[]),
+    mix: Mix::Free(&[LOST, LOST_INSIDE]),
     model: ModelUse::Any("ggx"),
     params: &[],
     laws: &["finite", "range", "energy", "cross-check", "reciprocity", "honest"],

@@ -38,6 +38,19 @@ const T_INSIDE: ChannelInfo = channel(
     Side::Inside,
 );
 
+const LOST: ChannelInfo = ChannelInfo {
+    id: "e-avg.lost",
+    meaning: "1 - e-avg",
+    range: [0.0, 1.0],
+    role: Role::AverageComplement(Lobe::Model, Side::Above),
+};
+const LOST_INSIDE: ChannelInfo = ChannelInfo {
+    id: "e-avg.lost.inside",
+    meaning: "1 - e-avg.inside",
+    role: Role::AverageComplement(Lobe::Model, Side::Inside),
+    ..LOST
+};
+
 /// Registry entry.
 pub static INFO: TableInfo = TableInfo {
     id: "average-albedo",
@@ -50,7 +63,7 @@ pub static INFO: TableInfo = TableInfo {
         Layout { id: "r-t-avg", doc: "averages of what is reflected and transmitted", channels: &[R, T] },
         Layout { id: "both-sides", doc: "R + T from above and from inside", channels: &[E, E_INSIDE] },
     ],
-    mix: Mix::Free(&[R_INSIDE, T_INSIDE]),
+    mix: Mix::Free(&[R_INSIDE, T_INSIDE, LOST, LOST_INSIDE]),
     model: ModelUse::Any("ggx"),
     params: &[],
     laws: &["finite", "range", "energy", "reciprocity", "honest"],

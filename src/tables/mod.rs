@@ -21,6 +21,7 @@ pub(crate) mod diffusion_sampling;
 pub mod driver;
 #[cfg(not(feature = "unstable"))]
 pub(crate) mod driver;
+pub(crate) mod film_sensitivity;
 pub(crate) mod fresnel_conductor;
 pub(crate) mod fresnel_dielectric;
 pub(crate) mod fresnel_schlick;
@@ -112,6 +113,7 @@ pub static TABLES: &[&TableInfo] = &[
     &fresnel_conductor::INFO,
     &fresnel_schlick::INFO,
     &thin_film::INFO,
+    &film_sensitivity::INFO,
     &ndf::INFO,
     &masking::INFO,
     &visibility::INFO,

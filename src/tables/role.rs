@@ -153,6 +153,13 @@ pub enum Role {
     FilmColour(Band),
     /// The same by a series of a few orders.
     FilmSeries(Band),
+    /// A transform of a colour-matching function: x, y or z, real or imaginary part.
+    Sensitivity {
+        /// 0, 1, 2: x, y, z.
+        component: usize,
+        /// The imaginary part?
+        imaginary: bool,
+    },
     /// The colour of a black body.
     BlackBody(Glow, Band),
     /// A distribution of facet normals; relative: times pi alpha^2.
@@ -277,6 +284,7 @@ impl Role {
             Role::MetalColour(_) | Role::FilmColour(_) | Role::FilmSeries(_) | Role::BlackBody(..) => {
                 "colour"
             }
+            Role::Sensitivity { .. } => "transform of the eye",
             Role::Distribution { .. } => "distribution of normals",
             Role::DistributionRoot => "tenth root of a distribution of normals",
             Role::Masking => "masking",

@@ -14,12 +14,19 @@ use crate::models::Brdf;
 struct Wanted {
     part: Light,
     side: Side,
+    /// What is missing of 1?
+    lost: bool,
 }
 
 impl Wanted {
     fn of(role: Role) -> Option<Wanted> {
         match role {
-            Role::Albedo(_, part, side) | Role::Average(_, part, side) => Some(Wanted { part, side }),
+            Role::Albedo(_, part, side) | Role::Average(_, part, side) => {
+                Some(Wanted { part, side, lost: false })
+            }
+            Role::Complement(_, side) | Role::AverageComplement(_, side) => {
+                Some(Wanted { part: Light::All, side, lost: true })
+            }
             _ => None,
         }
     }
@@ -91,7 +98,7 @@ impl Sides {
         let mut all = Estimate { value: [0.0; MAX_CHANNELS], error: [0.0; MAX_CHANNELS], evaluations: 0 };
         for (side, model) in [Side::Above, Side::Inside].into_iter().zip(&models.0) {
             let Some(model) = model else { continue };
-            let wants = |part| self.wanted.contains(&Wanted { part, side });
+            let wants = |part| self.wanted.iter().any(|w| w.part == part && w.side == side);
             let through = model.transmission().is_some();
             // R and T share the tolerance of their sum
             let each = if through && wants(Light::All) { 0.5 * tolerance } else { tolerance };
@@ -115,6 +122,10 @@ impl Sides {
                     Light::Reflected => r,
                     Light::Transmitted => t,
                 };
+                if wanted.lost {
+                    // the errors of quadrature may put E a little above 1
+                    all.value[c] = (1.0 - all.value[c]).max(0.0);
+                }
             }
         }
         Ok(all)

@@ -240,11 +240,14 @@ fn read(
             let i = 4 * (t * n + c);
             f64::from(f32::from_le_bytes(bytes[i..i + 4].try_into().unwrap()))
         }),
-        ("text", _) => {
+        ("text", storage) => {
             let planar = output.options.contains(&FileOption::Planar);
-            let list = numbers(&String::from_utf8(bytes).unwrap()).concat();
+            // a vector a texel: `vec3(0.25, 0.5, 1.0)`
+            let text = String::from_utf8(bytes).unwrap().replace(&format!("vec{n}("), "").replace(')', "");
+            let top = if storage == "unorm16" { 65535.0 } else { 1.0 };
+            let list = numbers(&text).concat();
             let texels = width * height * slices;
-            Box::new(move |t, c| list[if planar { c * texels + t } else { t * n + c }])
+            Box::new(move |t, c| list[if planar { c * texels + t } else { t * n + c }] / top)
         }
         ("npy", _) => {
             let list = npy(&write("npy"));

@@ -95,7 +95,7 @@ pub(crate) fn numbers(text: &str) -> Vec<Vec<f64>> {
     lists
 }
 
-/// Values of a little-endian `.npy` of f2, f4, f8 or u1.
+/// Values of a little-endian `.npy` of f2, f4, f8, u1 or u2.
 pub(crate) fn npy(path: &Path) -> Vec<f64> {
     let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let header = usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
@@ -110,6 +110,9 @@ pub(crate) fn npy(path: &Path) -> Vec<f64> {
         }
         t if t.contains("<f8") => {
             data.chunks_exact(8).map(|c| f64::from_le_bytes(c.try_into().unwrap())).collect()
+        }
+        t if t.contains("<u2") => {
+            data.chunks_exact(2).map(|c| f64::from(u16::from_le_bytes([c[0], c[1]]))).collect()
         }
         t if t.contains("|u1") => data.iter().map(|b| f64::from(*b)).collect(),
         t => panic!("{t}"),

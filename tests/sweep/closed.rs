@@ -54,6 +54,10 @@ pub(crate) fn attempt(kind: &str, layout: &str, pick: &mut Pick) -> Texel {
             }
             vec![("mu", mu), ("film", pick.log(1.0, 2e4))]
         }
+        "film-sensitivity" => {
+            set("scale", json!(pick.log(1e-3, 1e3)));
+            vec![("opd", pick.log(1.0, 1e6))]
+        }
         "ndf" => {
             set("distribution", json!(pick.one(&["ggx", "beckmann"])));
             vec![("mu_m", 1.0 - pick.log(1e-12, 1.0)), ("alpha", pick.log(1e-4, 2.0))]

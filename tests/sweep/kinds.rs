@@ -27,6 +27,7 @@ pub(crate) const KINDS: &[(&str, u64)] = &[
     ("fresnel-conductor", 60),
     ("fresnel-schlick", 60),
     ("thin-film", 60),
+    ("film-sensitivity", 40),
     ("ndf", 40),
     ("masking", 40),
     ("visibility", 40),
@@ -222,7 +223,7 @@ pub(crate) fn truths(t: &Texel) -> Truths {
             t.channels().iter().map(|c| of(c.id)).collect()
         }
         "importance" | "preintegrated-skin" | "diffusion-kernel" | "diffusion-sampling"
-        | "phase-sampling" | "blackbody" => lines::truths(t),
+        | "phase-sampling" | "blackbody" | "film-sensitivity" => lines::truths(t),
         "thin-film" | "fresnel-conductor" if t.layout == "srgb" => lines::truths(t),
         "airlight" | "airlight-surface" => fog::truths(t),
         _ => closed::truths(t),

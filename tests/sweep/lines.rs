@@ -34,6 +34,7 @@ pub(crate) fn truths(t: &Texel) -> Truths {
                 0.5 * (s + p)
             })
         }
+        "film-sensitivity" => sensitivity(t, &p),
         "blackbody" => blackbody(t, &p),
         "preintegrated-skin" => skin(t, &p),
         "diffusion-kernel" => kernel(t, &p),
@@ -73,6 +74,23 @@ fn daylight(kinks: &[f64], f: &dyn Fn(f64) -> f64) -> Truths {
             (value.0 / white.0, (value.1 + value.0.abs() / white.0 * white.1) / white.0 + 1e-14)
         })
         .collect()
+}
+
+/// Transforms of the observer, which is straight between whole nm, over the wavelength: real parts, then imaginary ones.
+fn sensitivity(t: &Texel, p: &Params) -> Truths {
+    let (opd, scale) = (t.axis("opd"), p.number("scale").unwrap());
+    let edges = sorted(mark(360.0), mark(830.0), (361..830).map(f64::from).map(mark).collect());
+    let part = |c: usize| {
+        let wave = |lambda: f64| {
+            let turns = (opd / lambda).fract() * TAU;
+            if c < 3 { turns.cos() } else { -turns.sin() }
+        };
+        both(|s| {
+            s.pieces(&edges, 1e3 * s.tolerance, &mut |at, _, _| scale * wave(at.x) * cie_xyz(at.x)[c % 3])
+                .value
+        })
+    };
+    (0..6).map(part).collect()
 }
 
 fn blackbody(t: &Texel, p: &Params) -> Truths {

@@ -54,6 +54,11 @@ def correlated(alpha):
     return lambda mu_o, mu_i: 1 / (1 + ggx_lambda(alpha, mu_o) + ggx_lambda(alpha, mu_i))
 
 
+def separable(alpha):
+    g1 = lambda mu: 1 / (1 + ggx_lambda(alpha, mu))
+    return lambda mu_o, mu_i: g1(mu_o) * g1(mu_i)
+
+
 def schlick_ibl(alpha):
     """Karis 2013: each side mu / (mu (1 - k) + k), k = alpha / 2."""
     g1 = lambda mu: mu / (mu * (1 - alpha / 2) + alpha / 2)
@@ -159,9 +164,9 @@ def meets(mu_o, edge):
     return found
 
 
-def glass(mu_o, alpha, eta, n=100):
-    """R + T of a rough interface, Walter 2007, with G = 1 / (1 + Lambda_o + Lambda_i) in both lobes; T as radiant flux."""
-    g = correlated(alpha)
+def glass(mu_o, alpha, eta, n=100, masking=correlated):
+    """R + T of a rough interface, Walter 2007, with the same G in both lobes, 1 / (1 + Lambda_o + Lambda_i) for one; T as radiant flux."""
+    g = masking(alpha)
 
     def d(z):
         e = (1 - z * z) / (alpha * alpha) + z * z
@@ -312,6 +317,25 @@ f0 = z**4
 row("cycles", "cycles-ggx-gen-schlick-ior-s", (11, 4, 7), [visible(mu, r * r, lambda v: (dielectric(v, ior) - f0) / (1 - f0))], 1e-8)
 row("cycles", "cycles-ggx-gen-schlick-s", (11, 4, 7), [visible(mu, r * r, lambda v: (1 - v) ** (5 * (1 - z) / z))], 1e-8)
 
+# Transforms of the colour-matching functions, x, y, z, real then imaginary: path difference 60000 k / (1022 pi) nm, times 60 / (1000 pi)
+def observer():
+    rows = [line.split(",") for line in open("../../src/terms/cie_xyz_1931_2deg.csv") if line[0] != "#"]
+    return [[float(cell) for cell in cells] for cells in rows]
+
+
+def transform(d, c, wave):
+    total = 0.0
+    rows = observer()
+    for low, high in zip(rows, rows[1:]):
+        for t, w in gauss(6, 0, 1):
+            eye = low[c] + t * (high[c] - low[c])
+            total += w * eye * wave(2 * pi * d / (low[0] + t))
+    return 60 / (1000 * pi) * total
+
+
+d = 60000 * 137 / (1022 * pi)
+row("cycles", "cycles-thin-film-cmf", (137,), [transform(d, c, f) for f in (cos, lambda x: -sin(x)) for c in (1, 2, 3)], 1e-6)
+
 # OSL: 1 - E; cosines are squares of equal steps for the lobe, equal steps for the interface, whose index is 1.001 + 3.999 t^2
 r = 11 / 15
 row("osl", "osl-mini-microfacet-ggx", (6, 11), [1 - split((6 / 15) ** 2, r * r, [TOTAL])[0]], 1e-6)
@@ -324,3 +348,18 @@ a, b, reflectance = 0.47706, -0.14135, 0.57114
 row("ltc-sheen", "ltc-sheen-volume", (20, 4), [a, b, reflectance], 2e-3)
 row("cycles", "cycles-sheen-ltc", (4, 20), [a, b, reflectance], 2e-3)
 row("babylon", "babylon-fuzz-brdf", (20, 4), [(a - 0.005) / 0.875, (b + 0.18) / 0.182, reflectance / 0.75], 3e-3)
+
+# OpenPBR: corners, mu fastest, then roughness, then the index: 16 evenly in 1 / ior from 2.5 down to 1, 16 evenly in ior from 1 to
+# 2.5, separable masking. What is lost by the interface (R + T), by its reflection alone, by a metal of F = 1; and the means of it
+mu, alpha = 9 / 31, (22 / 31) ** 2
+for side, eta in [("", 1 + 1.5 * 5 / 15), ("-inside", 1 / (1 + 1.5 * 10 / 15))]:
+    through = lambda m, n=100: 1 - glass(m, alpha, eta, n, separable)
+    opaque = lambda m: 1 - split(m, alpha, [lambda v: dielectric(v, eta)], separable)[0]
+    row("openpbr", "openpbr-dielectric" + side, (9, 22, 5), [through(mu)], 1e-6)
+    row("openpbr", "openpbr-dielectric-avg" + side, (22, 5), [average(lambda m: through(m, 32))], 1e-5)
+    row("openpbr", "openpbr-opaque" + side, (9, 22, 5), [opaque(mu)], 1e-5)
+    row("openpbr", "openpbr-opaque-avg" + side, (22, 5), [average(opaque)], 1e-5)
+metal = lambda m: 1 - split(m, alpha, [TOTAL], separable)[0]
+row("openpbr", "openpbr-metal", (9, 22), [metal(mu)], 1e-6)
+row("openpbr", "openpbr-metal-avg", (0, 22), [average(metal)], 1e-6)
+row("openpbr", "openpbr-sheen", (4, 20), [a, b, reflectance], 2e-3)

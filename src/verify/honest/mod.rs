@@ -18,6 +18,7 @@ mod models;
 mod normals;
 mod profiles;
 mod quad;
+mod sensitivity;
 mod shapes;
 mod sphere;
 mod strata;
@@ -136,6 +137,7 @@ impl<'a> Rules<'a> {
             if truth.is_none() {
                 *truth = fresnel::truth(role, asked.spec, asked.at)
                     .or_else(|| normals::truth(role, asked))
+                    .or_else(|| sensitivity::truth(role, asked))
                     .or_else(|| media::truth(role, asked, c))
                     .or_else(|| sphere::truth(role, asked))
                     .or_else(|| own(role, asked, c))
