@@ -239,7 +239,7 @@ impl Problem {
         let scales = profile.scales();
         // the narrowest Gaussian may be far inside the first scale, where some profiles are flat or infinite
         let mut ends = vec![0.0];
-        ends.extend((1..=TOWARDS_ZERO).rev().map(|k| scales[0] * 0.25f64.powi(k)));
+        ends.extend((1..=TOWARDS_ZERO).rev().map(|k| libm::ldexp(scales[0], -2 * k)));
         ends.extend(scales);
         let mut p = Problem {
             radii: Vec::new(),
