@@ -34,7 +34,7 @@ fn any_block_decodes_as_elsewhere() {
     for (storage, channels) in
         [(Storage::Bc4, 1), (Storage::Bc5, 2), (Storage::Bc6h, 3), (Storage::Bc6hSigned, 3)]
     {
-        let (mut file, _) = written(&with(&[128, 128], channels, |_| 0.5), "dds", storage, &[]).unwrap();
+        let (mut file, _) = written(&with(&[256, 256], channels, |_| 0.5), "dds", storage, &[]).unwrap();
         for (i, block) in (0u8..=255).cycle().zip(file[148..].chunks_exact_mut(16)) {
             block[..8].copy_from_slice(&next().to_le_bytes());
             block[8..].copy_from_slice(&next().to_le_bytes());
@@ -93,9 +93,9 @@ fn no_ramp_is_better() {
 }
 
 #[test]
-fn a_flat_block_holds_any_half() {
+fn a_flat_block_holds_every_half() {
     for (storage, sign) in [(Storage::Bc6h, 1.0), (Storage::Bc6hSigned, -1.0)] {
-        for first in (0..31744u16).step_by(6151) {
+        for first in (0..31744u16).step_by(2048) {
             // one half for each block of 4 x 4, of three channels that have nothing to do with each other
             let half = |i: usize| {
                 let (texel, c) = (i / 3, i % 3);
